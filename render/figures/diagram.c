@@ -15,8 +15,7 @@ static status paint_diagram(cairo_t *cr, const void *what, figure_report *report
     const diagram *d = what;
     TRY(sketch_begin(&s, cr, &d->frame, report, f));
     d->draw(&s, d);
-    sketch_end(&s);
-    return STATUS_OK;
+    return sketch_end(&s);
 }
 
 static void write_diagram(const void *what, csv_writer *csv)

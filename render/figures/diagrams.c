@@ -3,23 +3,25 @@
 #include <math.h>
 
 #include "render/figures/diagram.h"
-#include "src/base/text_stream.h"
 #include "src/rig/sensors.h"
 
-#define DEGREE     (G_PI / 180)
-#define HUB_RADIUS 0.11 // of the experiment's hub, section 2.3 [m]
+#define DEGREE         (G_PI / 180)
+#define HUB_RADIUS     0.11 // of the experiment's hub, section 2.3 [m]
+
+#define LINK_THICKNESS 7.0 // of a bar on the page [pt]
 
 // ---- 2.2: hub and links
 
-// A dimension line parallel to a link, `away` points from it.
+// A dimension line parallel to a link, `away` points from it, with its label beyond.
 static void draw_dimension(sketch *s, point from, point to, double away, anchor part,
                            const char *markup)
 {
-    double length = hypot(to.x - from.x, to.y - from.y);
-    double nx = (to.y - from.y) / length, ny = -(to.x - from.x) / length;
+    // the link's normal, to its left
+    const double length = hypot(to.x - from.x, to.y - from.y);
+    const double nx = (to.y - from.y) / length, ny = -(to.x - from.x) / length;
     const point start = shifted(from, away * nx, away * ny);
     const point end = shifted(to, away * nx, away * ny);
-    double beyond = away < 0 ? -3 : 3;
+    const double beyond = 3;
     sketch_measure(s, start, end);
     sketch_label(s,
                  (point){(start.x + end.x) / 2 + beyond * nx,
@@ -27,48 +29,59 @@ static void draw_dimension(sketch *s, point from, point to, double away, anchor 
                  part, "%s", markup);
 }
 
+// The hub with its own direction, which the spring k1 parts from the first link.
+static void draw_hub(sketch *s, const view *v, point hub)
+{
+    const double direction = -35 * DEGREE, radius = v->metre * HUB_RADIUS;
+    const point rim = view_place(v, view_end((point){0, 0}, HUB_RADIUS, direction));
+    sketch_line(s, hub, rim, 0.8, SKETCH_INK);
+    sketch_arc(s, (arc){hub, radius + 8, -75 * DEGREE, direction, true}, SKETCH_INK);
+    sketch_label(s, shifted(rim, 12, 6), (anchor){0, 0.5},
+                 "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>");
+}
+
 static void draw_links_diagram(sketch *s, const diagram *d)
 {
-    const double first = 12 * DEGREE, hub = 5 * DEGREE, second = 32 * DEGREE;
-    double l = d->p.arm.length / 2, radius = HUB_RADIUS;
-    view v = {s->left + 56, s->bottom - 44, 265, 1};
-    point o = {0, 0}, joint = view_end(o, l, first), tip = view_end(joint, l, second);
-    point hub_page = view_place(&v, (point){0, 0}), joint_page = view_place(&v, joint);
-    point tip_page = view_place(&v, tip);
-    point c1 = view_end(o, l / 2, first), c2 = view_end(joint, l / 2, second);
-    point c1_page = view_place(&v, c1), c2_page = view_place(&v, c2);
+    // the arm in the model, far more bent than in use
+    const double first = 12 * DEGREE, second = 32 * DEGREE, l = d->p.arm.length / 2;
+    const point origin = {0, 0};
+    const point elbow = view_end(origin, l, first);
 
-    sketch_disc(s, hub_page, v.metre * radius, SKETCH_INK, false);
-    diagram_link_angle(s, hub_page, 104, first, "<i>θ</i><sub>2</sub>");
-    diagram_link_angle(s, joint_page, 74, second, "<i>θ</i><sub>3</sub>");
-    sketch_bar(s, hub_page, joint_page, 7);
-    sketch_bar(s, joint_page, tip_page, 7);
-    sketch_mass_point(s, c1_page);
-    sketch_mass_point(s, c2_page);
+    // its joints and centres of mass on the page
+    const view v = {s->left + 56, s->bottom - 44, 265, 1};
+    const point hub = view_place(&v, origin), joint = view_place(&v, elbow);
+    const point tip = view_place(&v, view_end(elbow, l, second));
+    const point centre_2 = view_place(&v, view_end(origin, l / 2, first));
+    const point centre_3 = view_place(&v, view_end(elbow, l / 2, second));
+    const double hub_radius = v.metre * HUB_RADIUS;
 
-    // the hub's own direction, which the spring k1 parts from the first link
-    point rim = view_end(o, radius, hub - 40 * DEGREE), rim_page = view_place(&v, rim);
-    sketch_line(s, hub_page, rim_page, 0.8, SKETCH_INK);
-    sketch_arc(s,
-               (arc){hub_page, v.metre * radius + 8, -75 * DEGREE, hub - 40 * DEGREE,
-                     true},
-               SKETCH_INK);
-    sketch_label(s, shifted(rim_page, 12, 6), (anchor){0, 0.5},
-                 "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>");
-    sketch_spiral(s, hub_page, 13, SLOT_BLUE);
-    sketch_spiral(s, joint_page, 11, SLOT_BLUE);
-    sketch_label(s, (point){hub_page.x - v.metre * radius - 4, hub_page.y},
-                 (anchor){1, 0.5}, "<i>k</i><sub>1</sub>");
-    sketch_label(s, shifted(joint_page, 0, 14), (anchor){0.5, 0}, "<i>k</i><sub>2</sub>");
-    draw_dimension(s, hub_page, c1_page, 35, (anchor){0.5, 1}, "<i>ε</i><sub>2</sub>");
-    draw_dimension(s, joint_page, c2_page, 17, (anchor){1, 1}, "<i>ε</i><sub>3</sub>");
-    draw_dimension(s, hub_page, joint_page, 54, (anchor){0.5, 1}, "<i>l</i>");
-    draw_dimension(s, joint_page, tip_page, 36, (anchor){1, 1}, "<i>l</i>");
-    sketch_label(s, shifted(c1_page, 30, -13), (anchor){0.5, 1},
+    // bodies and angles
+    sketch_disc(s, hub, hub_radius, SKETCH_INK, false);
+    diagram_link_angle(s, hub, 104, first, "<i>θ</i><sub>2</sub>");
+    diagram_link_angle(s, joint, 74, second, "<i>θ</i><sub>3</sub>");
+    sketch_bar(s, hub, joint, LINK_THICKNESS);
+    sketch_bar(s, joint, tip, LINK_THICKNESS);
+    sketch_mass_point(s, centre_2);
+    sketch_mass_point(s, centre_3);
+    draw_hub(s, &v, hub);
+
+    // springs
+    sketch_spiral(s, hub, 13, SLOT_BLUE);
+    sketch_spiral(s, joint, 11, SLOT_BLUE);
+    sketch_label(s, (point){hub.x - hub_radius - 4, hub.y}, (anchor){1, 0.5},
+                 "<i>k</i><sub>1</sub>");
+    sketch_label(s, shifted(joint, 0, 14), (anchor){0.5, 0}, "<i>k</i><sub>2</sub>");
+
+    // lengths, masses, inertias
+    draw_dimension(s, hub, centre_2, 35, (anchor){0.5, 1}, "<i>ε</i><sub>2</sub>");
+    draw_dimension(s, joint, centre_3, 17, (anchor){1, 1}, "<i>ε</i><sub>3</sub>");
+    draw_dimension(s, hub, joint, 54, (anchor){0.5, 1}, "<i>l</i>");
+    draw_dimension(s, joint, tip, 36, (anchor){1, 1}, "<i>l</i>");
+    sketch_label(s, shifted(centre_2, 30, -13), (anchor){0.5, 1},
                  "<i>m</i><sub>2</sub>, <i>I</i><sub>2</sub>");
-    sketch_label(s, shifted(c2_page, 64, -22), (anchor){0, 0},
+    sketch_label(s, shifted(centre_3, 64, -22), (anchor){0, 0},
                  "<i>m</i><sub>3</sub>, <i>I</i><sub>3</sub>");
-    sketch_label(s, shifted(tip_page, 7, 0), (anchor){0, 0.5}, "tip");
+    sketch_label(s, shifted(tip, 7, 0), (anchor){0, 0.5}, "tip");
 }
 
 static void add_arm_values(diagram *d)
@@ -103,60 +116,92 @@ status diagram_links(const figure_order *order, artwork *out, fault *f)
 
 // ---- 2.3: free bodies
 
+static point middle_of(point a, point b)
+{
+    return (point){(a.x + b.x) / 2, (a.y + b.y) / 2};
+}
+
 // A turning arrow about a joint, between two directions [degrees].
 static void draw_torque(sketch *s, point joint, double from, double to)
 {
     sketch_arc(s, (arc){joint, 17, from * DEGREE, to * DEGREE, true}, SLOT_BLUE);
 }
 
+// A force at a joint.
+static void draw_force(sketch *s, point at, double right, double down)
+{
+    sketch_arrow(s, at, shifted(at, right, down), SLOT_VERMILLION);
+}
+
+// Body 1, the hub at a place: the spring's torque against it, and the motor's.
+static void draw_free_hub(sketch *s, point hub, double radius)
+{
+    sketch_disc(s, hub, radius, SKETCH_INK, false);
+    sketch_disc(s, hub, 2, SKETCH_INK, true);
+    sketch_arc(s, (arc){hub, 11, 200 * DEGREE, 40 * DEGREE, true}, SLOT_BLUE);
+    sketch_label(s, shifted(hub, 19, -14), (anchor){0, 1}, "\u2212<i>τ</i><sub>1</sub>");
+    sketch_arc(s, (arc){hub, 30, -150 * DEGREE, -40 * DEGREE, true}, SLOT_GREEN);
+    sketch_small(s, shifted(hub, 0, 36), (anchor){0.5, 0},
+                 "motor <i>τ</i><sub>m</sub>, friction");
+    sketch_small(s, shifted(hub, 0, -40), (anchor){0.5, 1}, "body 1");
+}
+
+// Body 2 between two joints: torques of both springs, forces of both hinges.
+static void draw_first_link(sketch *s, point from, point to)
+{
+    const point centre = middle_of(from, to);
+    sketch_bar(s, from, to, LINK_THICKNESS);
+    sketch_mass_point(s, centre);
+    draw_torque(s, from, 120, 250);
+    sketch_label(s, shifted(from, -10, -21), (anchor){0.5, 1}, "<i>τ</i><sub>1</sub>");
+    draw_torque(s, to, -110, 60);
+    sketch_label(s, shifted(to, 2, -16), (anchor){1, 1}, "<i>τ</i><sub>2</sub>");
+    draw_force(s, from, 8, 36);
+    sketch_label(s, shifted(from, 12, 37), (anchor){0, 0.5}, "<i>f</i><sub>1</sub>");
+    draw_force(s, to, -8, 36);
+    sketch_label(s, shifted(to, -12, 37), (anchor){1, 0.5}, "<i>f</i><sub>2</sub>");
+    sketch_small(s, shifted(centre, 0, 9), (anchor){0.5, 0}, "body 2");
+}
+
+// Body 3 from its joint to the tip, at an angle: torque and force of the joint, equal and
+// opposite to those of body 2, and the wall's force across it.
+static void draw_last_link(sketch *s, point from, point tip, double angle)
+{
+    const point centre = middle_of(from, tip);
+    sketch_bar(s, from, tip, LINK_THICKNESS);
+    sketch_mass_point(s, centre);
+    draw_torque(s, from, 230, 110);
+    sketch_label(s, shifted(from, 8, 18), (anchor){0.5, 0}, "\u2212<i>τ</i><sub>2</sub>");
+    draw_force(s, from, 8, -36);
+    sketch_label(s, shifted(from, 12, -37), (anchor){0, 0.5},
+                 "\u2212<i>f</i><sub>2</sub>");
+
+    // the wall pushes back, across the last link
+    const double away = 40;
+    const point start = shifted(tip, -away * sin(angle), -away * cos(angle));
+    sketch_arrow(s, start, shifted(tip, 0, -4), SLOT_VERMILLION);
+    sketch_label(s, shifted(start, -5, 0), (anchor){1, 0.5}, "<i>f</i>");
+    sketch_small(s, shifted(centre, 8, 10), (anchor){0, 0}, "body 3");
+}
+
 static void draw_free_bodies(sketch *s, const diagram *d)
 {
-    double l = d->p.arm.length / 2, metre = 184;
-    const double first = 9 * DEGREE, second = 20 * DEGREE;
-    double base = s->bottom - 52;
-    view hub = {s->left + 44, base, metre, 1}, one = {s->left + 122, base, metre, 1};
-    point h = view_place(&hub, (point){0, 0}), a = view_place(&one, (point){0, 0});
-    point e = view_end((point){0, 0}, l, first), b = view_place(&one, e);
-    view two = {b.x + 46, b.y - 14, metre, 1};
-    point c = view_place(&two, (point){0, 0}), g = view_end((point){0, 0}, l, second);
-    point t = view_place(&two, g);
+    const double l = d->p.arm.length / 2, metre = 184, base = s->bottom - 52;
+    const double first_angle = 9 * DEGREE, second_angle = 20 * DEGREE;
+    const point origin = {0, 0};
 
-    sketch_disc(s, h, 0.9 * metre * HUB_RADIUS, SKETCH_INK, false);
-    sketch_disc(s, h, 2, SKETCH_INK, true);
-    sketch_arc(s, (arc){h, 11, 200 * DEGREE, 40 * DEGREE, true}, SLOT_BLUE);
-    sketch_label(s, shifted(h, 19, -14), (anchor){0, 1}, "\u2212<i>τ</i><sub>1</sub>");
-    sketch_arc(s, (arc){h, 30, -150 * DEGREE, -40 * DEGREE, true}, SLOT_GREEN);
-    sketch_small(s, shifted(h, 0, 36), (anchor){0.5, 0},
-                 "motor <i>τ</i><sub>m</sub>, friction");
-    sketch_small(s, shifted(h, 0, -40), (anchor){0.5, 1}, "body 1");
+    // each body in a view of its own, apart from its neighbours
+    const point hub = {s->left + 44, base};
+    const view first = {s->left + 122, base, metre, 1};
+    const point from = view_place(&first, origin);
+    const point to = view_place(&first, view_end(origin, l, first_angle));
+    const view last = {to.x + 46, to.y - 14, metre, 1};
+    const point joint = view_place(&last, origin);
+    const point tip = view_place(&last, view_end(origin, l, second_angle));
 
-    sketch_bar(s, a, b, 7);
-    sketch_mass_point(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2});
-    draw_torque(s, a, 120, 250);
-    sketch_label(s, shifted(a, -10, -21), (anchor){0.5, 1}, "<i>τ</i><sub>1</sub>");
-    draw_torque(s, b, -110, 60);
-    sketch_label(s, shifted(b, 2, -16), (anchor){1, 1}, "<i>τ</i><sub>2</sub>");
-    sketch_arrow(s, a, shifted(a, 8, 36), SLOT_VERMILLION);
-    sketch_label(s, shifted(a, 12, 37), (anchor){0, 0.5}, "<i>f</i><sub>1</sub>");
-    sketch_arrow(s, b, shifted(b, -8, 36), SLOT_VERMILLION);
-    sketch_label(s, shifted(b, -12, 37), (anchor){1, 0.5}, "<i>f</i><sub>2</sub>");
-    sketch_small(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2 + 9}, (anchor){0.5, 0},
-                 "body 2");
-
-    sketch_bar(s, c, t, 7);
-    sketch_mass_point(s, (point){(c.x + t.x) / 2, (c.y + t.y) / 2});
-    draw_torque(s, c, 230, 110);
-    sketch_label(s, shifted(c, 8, 18), (anchor){0.5, 0}, "\u2212<i>τ</i><sub>2</sub>");
-    sketch_arrow(s, c, shifted(c, 8, -36), SLOT_VERMILLION);
-    sketch_label(s, shifted(c, 12, -37), (anchor){0, 0.5}, "\u2212<i>f</i><sub>2</sub>");
-    // the wall pushes back, across the last link
-    double away = 40;
-    sketch_arrow(s, shifted(t, -away * sin(second), -away * cos(second)),
-                 shifted(t, 0, -4), SLOT_VERMILLION);
-    sketch_label(s, (point){t.x - away * sin(second) - 5, t.y - away * cos(second)},
-                 (anchor){1, 0.5}, "<i>f</i>");
-    sketch_small(s, (point){(c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10}, (anchor){0, 0},
-                 "body 3");
+    draw_free_hub(s, hub, 0.9 * metre * HUB_RADIUS);
+    draw_first_link(s, from, to);
+    draw_last_link(s, joint, tip, second_angle);
 }
 
 status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
@@ -176,39 +221,52 @@ status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
 
 // ---- 4.1: springs in series
 
-static void draw_springs(sketch *s, const diagram *d)
+// A mass on the floor, a block of half a width and half a height round a point, that
+// moves to the right.
+static void draw_moving_mass(sketch *s, point at, double half_width, double half_height)
 {
-    double y = s->top + 46, wall = s->right - 40, mass = s->left + 74;
-
-    // the floor and the mass on it
-    sketch_line(s, (point){s->left + 20, y + 20}, (point){wall, y + 20}, 0.5,
-                SKETCH_FAINT);
     set_colour(s->cr, s->colours->shade);
-    cairo_rectangle(s->cr, mass - 26, y - 20, 52, 40);
+    cairo_rectangle(s->cr, at.x - half_width, at.y - half_height, 2 * half_width,
+                    2 * half_height);
     cairo_fill_preserve(s->cr);
     set_colour(s->cr, s->colours->axis);
     cairo_set_line_width(s->cr, 0.8);
     cairo_stroke(s->cr);
+    sketch_label(s, at, (anchor){0.5, 0.5}, "<i>m</i><sub>c</sub>");
 
-    sketch_label(s, (point){mass, y}, (anchor){0.5, 0.5}, "<i>m</i><sub>c</sub>");
-    sketch_arrow(s, (point){mass - 14, y - 30}, (point){mass + 34, y - 30}, SLOT_GREEN);
-    sketch_label(s, (point){mass + 38, y - 30}, (anchor){0, 0.5}, "<i>v</i><sub>0</sub>");
+    // its velocity, above
+    sketch_arrow(s, shifted(at, -14, -30), shifted(at, 34, -30), SLOT_GREEN);
+    sketch_label(s, shifted(at, 38, -30), (anchor){0, 0.5}, "<i>v</i><sub>0</sub>");
+}
+
+static void draw_springs(sketch *s, const diagram *d)
+{
+    const double half_width = 26, half_height = 20; // of the mass
+    const double k1 = d->p.arm.k1, k2 = d->p.arm.k2;
+
+    // from left to right: the mass, where the springs meet, and the wall
+    const point mass = {s->left + 74, s->top + 46}, wall = {s->right - 40, mass.y};
+    const point edge = shifted(mass, half_width, 0);
+    const point middle = {(edge.x + wall.x) / 2, mass.y};
+
+    // the floor and the mass on it
+    sketch_line(s, (point){s->left + 20, mass.y + half_height},
+                shifted(wall, 0, half_height), 0.5, SKETCH_FAINT);
+    draw_moving_mass(s, mass, half_width, half_height);
 
     // both springs in series, to the wall
-    double middle = (mass + 26 + wall) / 2;
-    sketch_coil(s, (point){mass + 26, y}, (point){middle, y}, 5, SLOT_BLUE);
-    sketch_coil(s, (point){middle, y}, (point){wall, y}, 9, SLOT_BLUE);
-    sketch_disc(s, (point){middle, y}, 2, SKETCH_INK, true);
-    sketch_wall(s, (point){wall, y + 34}, (point){wall, y - 34});
+    sketch_coil(s, edge, middle, 5, SLOT_BLUE);
+    sketch_coil(s, middle, wall, 9, SLOT_BLUE);
+    sketch_disc(s, middle, 2, SKETCH_INK, true);
+    sketch_wall(s, shifted(wall, 0, 34), shifted(wall, 0, -34));
 
-    // their stiffnesses
-    sketch_small(s, (point){(mass + 26 + middle) / 2, y + 26}, (anchor){0.5, 0},
-                 "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", d->p.arm.k1);
-    sketch_small(s, (point){(middle + wall) / 2, y + 26}, (anchor){0.5, 0},
-                 "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", d->p.arm.k2);
-
-    double k1 = d->p.arm.k1, k2 = d->p.arm.k2;
-    sketch_label(s, (point){(s->left + s->right) / 2, y + 50}, (anchor){0.5, 0},
+    // their stiffnesses, and that of both
+    const double below = mass.y + 26;
+    sketch_small(s, (point){(edge.x + middle.x) / 2, below}, (anchor){0.5, 0},
+                 "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", k1);
+    sketch_small(s, (point){(middle.x + wall.x) / 2, below}, (anchor){0.5, 0},
+                 "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", k2);
+    sketch_label(s, (point){(s->left + s->right) / 2, mass.y + 50}, (anchor){0.5, 0},
                  "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + "
                  "1/<i>k</i><sub>2</sub>,   <i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
                  k1 * k2 / (k1 + k2));
@@ -245,13 +303,19 @@ status diagram_springs(const figure_order *order, artwork *out, fault *f)
         speed, d->impulse, d->impulse / speed, d->p.arm.mass);
 }
 
+// ---- 2.1: the force sensor
+
 // The circuit's resistors are the thesis's. Supply and sensor, which it does not print,
 // are the rig's.
-#define R_GAIN     10e3 // both of the gain stage [ohm]
-#define MOST_FORCE 12.0 // [N]
+#define R_GAIN         10e3 // both of the gain stage [ohm]
+#define MOST_FORCE     12.0 // [N]
+
+#define CIRCUIT_HEIGHT 186.0 // [pt]
+#define CURVE_HEIGHT   52.0  // of the plot below it [mm]
 
 enum { SENSOR_VALUES = 7, CURVE_POINTS = 400 };
 
+// Earth: a line down to three short ones.
 static void draw_ground(const sketch *s, double x, double y)
 {
     sketch_line(s, (point){x, y}, (point){x, y + 5}, 0.8, SKETCH_INK);
@@ -276,9 +340,9 @@ static void draw_amplifier(sketch *s, double x, double y)
     sketch_label(s, (point){x + 7, y + 10}, (anchor){0.5, 0.5}, "\u2212");
 }
 
+// The divider at x, downwards from y: supply, sensor, output, measuring resistor, earth.
 static void draw_divider(sketch *s, const sensor_parameters *p, double x, double y)
 {
-
     // supply
     sketch_small(s, (point){x, y}, (anchor){0.5, 0}, "<i>V</i><sub>+</sub> = %g\u2009V",
                  p->fsr_supply);
@@ -302,7 +366,9 @@ static void draw_divider(sketch *s, const sensor_parameters *p, double x, double
 // From the divider's node at (x, y) through buffer and gain stage to the output.
 static void draw_stages(sketch *s, double x, double y)
 {
-    double first = x + 56, second = first + 92, node = second - 14;
+    // inputs of both amplifiers, the node of the feedback, and the second one's output
+    const double first = x + 56, second = first + 92, node = second - 14;
+    const double output = second + 54;
 
     // the buffer, fed back on itself
     wire(s, x, y, first, y);
@@ -324,11 +390,11 @@ static void draw_stages(sketch *s, double x, double y)
     wire(s, second, y + 30, node, y + 30);
     wire(s, node, y + 30, node, y + 62);
     sketch_disc(s, (point){node, y + 62}, 1.7, SKETCH_INK, true);
-    sketch_resistor(s, (point){node, y + 62}, (point){second + 54, y + 62});
-    sketch_small(s, (point){(node + second + 54) / 2, y + 69}, (anchor){0.5, 0},
+    sketch_resistor(s, (point){node, y + 62}, (point){output, y + 62});
+    sketch_small(s, (point){(node + output) / 2, y + 69}, (anchor){0.5, 0},
                  "<i>R</i><sub>6</sub> = 10\u2009kΩ");
-    wire(s, second + 54, y + 62, second + 54, y + 20);
-    sketch_disc(s, (point){second + 54, y + 20}, 1.7, SKETCH_INK, true);
+    wire(s, output, y + 62, output, y + 20);
+    sketch_disc(s, (point){output, y + 20}, 1.7, SKETCH_INK, true);
 
     // and the divider that sets its gain
     sketch_resistor(s, (point){node, y + 62}, (point){node, y + 106});
@@ -350,7 +416,7 @@ static void paint_part(sketch *s, const figure *fig, double x, double y)
     cairo_save(s->cr);
     cairo_translate(s->cr, x, y);
     cairo_scale(s->cr, 1 / s->scale, 1 / s->scale);
-    loss_unless(figure_paint(s->cr, fig, part, NULL) == STATUS_OK);
+    s->code = figure_paint(s->cr, fig, part, s->f);
     cairo_restore(s->cr);
 
     // its texts into the report of the whole
@@ -389,19 +455,19 @@ static void draw_sensor(sketch *s, const diagram *d)
                          .panels = &panel,
                          .panel_count = 1,
                          .width = s->scale * (s->right - s->left) * 25.4 / 72,
-                         .height = 52 * s->scale,
+                         .height = CURVE_HEIGHT * s->scale,
                          .letters = s->frame->look.letters,
                          .transparent = s->frame->look.transparent,
                          .font = s->frame->look.font,
                          .theme = s->theme};
 
-    paint_part(s, &plot, s->left, s->top + 186);
+    paint_part(s, &plot, s->left, s->top + CIRCUIT_HEIGHT);
 }
 
 status diagram_sensor(const figure_order *order, artwork *out, fault *f)
 {
-    g_autoptr(diagram) d =
-        diagram_create(order, NULL, 186 + 52 / 25.4 * 72, draw_sensor, f);
+    const double height = CIRCUIT_HEIGHT + CURVE_HEIGHT / 25.4 * 72;
+    g_autoptr(diagram) d = diagram_create(order, NULL, height, draw_sensor, f);
     const sensor_parameters *p = &d->p.sensor;
     diagram_add_value(d, "measuring resistor", p->fsr_divider, "ohm");
     diagram_add_value(d, "gain resistor R5", R_GAIN, "ohm");
@@ -411,10 +477,9 @@ status diagram_sensor(const figure_order *order, artwork *out, fault *f)
     diagram_add_value(d, "exponent of the sensor's power law", p->fsr_exponent, "");
     diagram_add_value(d, "force beyond which it saturates", p->fsr_saturation, "N");
 
-    // force and output of the divider
+    // force and output of the divider, close together where the curve bends
     assert(d->values->len == SENSOR_VALUES);
     for (int i = 0; i < CURVE_POINTS; i++) {
-        // close together where the curve bends
         double share = (double)i / (CURVE_POINTS - 1), force = MOST_FORCE * share * share;
         diagram_add_value(d, "force", force, "N");
         diagram_add_value(d, "output", fsr_volts(p, force), "V");

@@ -123,7 +123,8 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame,
                   .theme = frame->look.theme,
                   .frame = frame,
                   .report = report,
-                  .scale = page_scale(frame)};
+                  .scale = page_scale(frame),
+                  .f = f};
 
     // sizes, which the report keeps
     frame_heights(s->context, frame, &above, &below);
@@ -164,10 +165,11 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame,
     return STATUS_OK;
 }
 
-void sketch_end(sketch *s)
+status sketch_end(sketch *s)
 {
     cairo_restore(s->cr);
     g_object_unref(s->context);
+    return s->code;
 }
 
 // ---- lines

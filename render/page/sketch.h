@@ -30,6 +30,8 @@ typedef struct sketch {
     double scale;              // points of the page per designed point
     double left, right;        // of the drawing
     double top, bottom;
+    status code; // of what was drawn so far, with its fault in f (may be NULL)
+    fault *f;
 } sketch;
 
 // Size of letters in designed points for `size` points on the page; they shrink less than
@@ -43,7 +45,7 @@ void sketch_size(const sketch_frame *frame, double *width, double *height);
 // STATUS_CANNOT_READ if the font is missing.
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame,
                     figure_report *report, fault *f);
-void sketch_end(sketch *s);
+status sketch_end(sketch *s); // returns s->code
 
 // Instead of a palette slot: the colours of axes and text, and of secondary parts.
 enum { SKETCH_INK = -1, SKETCH_FAINT = -2 };

@@ -259,8 +259,7 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
     }
     draw_rule(&s, y + CELL_SPACE, OUTER_RULE);
 
-    sketch_end(&s);
-    return STATUS_OK;
+    return sketch_end(&s);
 }
 
 // ---- numbers and HTML
