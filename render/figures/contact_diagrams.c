@@ -71,25 +71,53 @@ static void draw_contact_force(sketch *s, point at, double direction, const char
 
 // ---- 3.1: two successive steps
 
-static void draw_contact(sketch *s, const diagram *d)
+// The reference line from the hub, and the coordinates a and b of the contact point over
+// its foot on that line.
+static void draw_coordinates(sketch *s, point hub, point foot, point contact)
 {
-    const arm_shapes *of = &d->shapes;
-    view v = {s->left + 34, s->bottom - 30, 255, CONTACT_ACROSS};
-    double length = d->p.arm.length, wall = d->p.wall.angle;
-    point contact = view_place(&v, (point){length * cos(wall), length * sin(wall)});
-    point foot = view_place(&v, (point){length * cos(wall), 0});
-    arm_places one = places_of(&v, d, of->one, 0), other = places_of(&v, d, of->other, 0);
+    const double beyond = 46; // of the dashed lines behind the point
+    sketch_dashed(s, hub, shifted(foot, beyond, 0), SKETCH_FAINT);
+    sketch_dashed(s, contact, shifted(contact, beyond, 0), SKETCH_FAINT);
 
-    // the reference line and the coordinates of the contact point
-    sketch_dashed(s, one.hub, shifted(foot, 46, 0), SKETCH_FAINT);
-    sketch_dashed(s, contact, shifted(contact, 46, 0), SKETCH_FAINT);
-    sketch_measure(s, (point){one.hub.x, foot.y + 16}, shifted(foot, 0, 16));
-    sketch_label(s, (point){(one.hub.x + foot.x) / 2, foot.y + 18}, (anchor){0.5, 0},
+    sketch_measure(s, (point){hub.x, foot.y + 16}, shifted(foot, 0, 16));
+    sketch_label(s, (point){(hub.x + foot.x) / 2, foot.y + 18}, (anchor){0.5, 0},
                  "<i>a</i>");
     sketch_measure(s, (point){contact.x + 38, foot.y}, shifted(contact, 38, 0));
     sketch_label(s, (point){contact.x + 42, (foot.y + contact.y) / 2}, (anchor){0, 0.5},
                  "<i>b</i>");
     sketch_label(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)");
+}
+
+// Which shape is which, at the page's upper left corner.
+static void draw_shape_key(sketch *s, const arm_shapes *of)
+{
+    const point full = {s->left + 4, s->top + 14}, dashed = shifted(full, 0, 14);
+    const double length = 22, text = 28;
+    sketch_bar(s, full, shifted(full, length, 0), 5);
+    sketch_small(s, shifted(full, text, 0), (anchor){0, 0.5}, "<i>t</i> = %.2f\u2009s",
+                 of->one.time);
+    sketch_dashed(s, dashed, shifted(dashed, length, 0), SLOT_BLUE);
+    sketch_small(s, shifted(dashed, text, 0), (anchor){0, 0.5},
+                 "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
+}
+
+// The name of a link's length, `left` and `up` from its middle.
+static void name_length(sketch *s, point from, point to, double left, double up)
+{
+    const point middle = {(from.x + to.x) / 2, (from.y + to.y) / 2};
+    sketch_label(s, shifted(middle, -left, -up), (anchor){1, 1}, "<i>l</i>");
+}
+
+static void draw_contact(sketch *s, const diagram *d)
+{
+    const arm_shapes *of = &d->shapes;
+    const view v = {s->left + 34, s->bottom - 30, 255, CONTACT_ACROSS};
+    const double a = d->p.arm.length * cos(d->p.wall.angle);
+    const double b = d->p.arm.length * sin(d->p.wall.angle);
+    const point contact = view_place(&v, (point){a, b});
+    const arm_places one = places_of(&v, d, of->one, 0);
+    const arm_places other = places_of(&v, d, of->other, 0);
+    draw_coordinates(s, one.hub, view_place(&v, (point){a, 0}), contact);
 
     // both configurations, and the angles of the first
     draw_full_arm(s, one);
@@ -98,27 +126,11 @@ static void draw_contact(sketch *s, const diagram *d)
                        "<i>θ</i><sub>2</sub>");
     diagram_link_angle(s, one.joint, 62, page_direction(one.joint, one.end),
                        "<i>θ</i><sub>3</sub>");
-    sketch_label(s,
-                 (point){(one.hub.x + one.joint.x) / 2 - 10,
-                         (one.hub.y + one.joint.y) / 2 - 6},
-                 (anchor){1, 1}, "<i>l</i>");
-    sketch_label(s,
-                 (point){(one.joint.x + one.end.x) / 2 - 8,
-                         (one.joint.y + one.end.y) / 2 - 8},
-                 (anchor){1, 1}, "<i>l</i>");
-
+    name_length(s, one.hub, one.joint, 10, 6);
+    name_length(s, one.joint, one.end, 8, 8);
     draw_contact_force(s, contact, page_direction(one.joint, contact), "<i>f</i>",
                        of->one.force);
-
-    // which is which
-    double key = s->top + 14;
-    sketch_bar(s, (point){s->left + 4, key}, (point){s->left + 26, key}, 5);
-    sketch_small(s, (point){s->left + 32, key}, (anchor){0, 0.5},
-                 "<i>t</i> = %.2f\u2009s", of->one.time);
-    sketch_dashed(s, (point){s->left + 4, key + 14}, (point){s->left + 26, key + 14},
-                  SLOT_BLUE);
-    sketch_small(s, (point){s->left + 32, key + 14}, (anchor){0, 0.5},
-                 "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
+    draw_shape_key(s, of);
 }
 
 // The pair of successive rows in contact between which the first link turns most.
@@ -161,8 +173,8 @@ status diagram_contact(const figure_order *order, artwork *out, fault *f)
     of->other = shape_of(&t->rows[second]);
 
     // the numbers, and what is left of the constraint (3.9)
-    double a = d->p.arm.length * cos(d->p.wall.angle),
-           b = d->p.arm.length * sin(d->p.wall.angle);
+    const double a = d->p.arm.length * cos(d->p.wall.angle);
+    const double b = d->p.arm.length * sin(d->p.wall.angle);
     diagram_add_value(d, "a", a, "m");
     diagram_add_value(d, "b", b, "m");
     add_shape_values(d, &of->one);
@@ -337,53 +349,60 @@ static void put_value(sketch *s, point at, double ax, const char *symbol, double
     sketch_small(s, at, (anchor){ax, 0.5}, "%s = %s\u2009%s", symbol, number, shown);
 }
 
-// The whole arm, its hinge to the last body cut.
-static void draw_arm(sketch *s, const diagram *d)
+// Velocities of the joint [m/s]: before the impact to the left of it, after it to the
+// right.
+static void draw_joint_velocities(sketch *s, point joint, double before, double after)
 {
-    double l = d->p.arm.length / 2, wall = d->p.wall.angle;
-    view v = {s->left + 40, s->top + 62, 270, ACROSS};
-    point joint = view_end((point){0, 0}, l, d->before.angle[1] - wall);
-    point hub_page = view_place(&v, (point){0, 0}), joint_page = view_place(&v, joint);
-    point contact = view_place(&v, (point){d->p.arm.length, 0});
-    double joint_before = l * d->before.velocity[1], joint_after = l * d->after[1];
-    double tip_before = joint_before + l * d->before.velocity[2];
+    const double beside = 6, above = joint.y - 6;
+    const point left = {joint.x - beside, above}, right = {joint.x + beside, above};
+    sketch_arrow(s, left, shifted(left, 0, -SPEED_LENGTH * before), SLOT_GREEN);
+    sketch_dashed_arrow(s, right, shifted(right, 0, -SPEED_LENGTH * after), SLOT_ORANGE);
+    sketch_small(s, shifted(left, -6, -4), (anchor){1, 1}, "before\n%.3f\u2009m/s",
+                 before);
+    sketch_small(s, shifted(right, 6, -4), (anchor){0, 1}, "after\n%.3f\u2009m/s", after);
+}
+
+// The tip arrives at a speed [m/s] and is stopped by the wall's impulse [N s].
+static void draw_tip_stop(sketch *s, point contact, double speed, double impulse)
+{
+    const point below = shifted(contact, -8, 6), above = shifted(contact, 0, -50);
+    sketch_arrow(s, shifted(below, 0, SPEED_LENGTH * speed), below, SLOT_GREEN);
+    sketch_small(s, shifted(contact, -14, 14), (anchor){1, 0},
+                 "before\n%.3f\u2009m/s\nafter: at rest", speed);
+    sketch_arrow(s, above, shifted(contact, 0, -6), SLOT_VERMILLION);
+    sketch_small(s, shifted(above, 0, -3), (anchor){0.5, 1}, "impulse %.4f\u2009N·s",
+                 impulse);
+}
+
+// The whole arm, its hinge to the last body cut.
+static void draw_hitting_arm(sketch *s, const diagram *d)
+{
+    const double l = d->p.arm.length / 2, wall = d->p.wall.angle;
+    const view v = {s->left + 40, s->top + 62, 270, ACROSS};
+    const point origin = {0, 0};
+    const point elbow = view_end(origin, l, d->before.angle[1] - wall);
+    const point hub = view_place(&v, origin), joint = view_place(&v, elbow);
+    const point contact = view_place(&v, (point){d->p.arm.length, 0});
 
     // the wall and the arm
     sketch_wall(s, shifted(contact, 34, -5), shifted(contact, -6, -5));
-    sketch_dashed(s, hub_page, contact, SKETCH_FAINT);
-    sketch_bar(s, hub_page, joint_page, 7);
-    sketch_bar(s, joint_page, contact, 7);
-    sketch_disc(s, hub_page, 14, SKETCH_INK, false);
-    sketch_disc(s, hub_page, 2, SKETCH_INK, true);
-    sketch_disc(s, joint_page, 2.6, SKETCH_INK, true);
-    sketch_small(s, shifted(hub_page, 0, 18), (anchor){0.5, 0}, "hub");
+    sketch_dashed(s, hub, contact, SKETCH_FAINT);
+    sketch_bar(s, hub, joint, 7);
+    sketch_bar(s, joint, contact, 7);
+    sketch_disc(s, hub, 14, SKETCH_INK, false);
+    sketch_disc(s, hub, 2, SKETCH_INK, true);
+    sketch_disc(s, joint, 2.6, SKETCH_INK, true);
+    sketch_small(s, shifted(hub, 0, 18), (anchor){0.5, 0}, "hub");
     sketch_small(s, shifted(contact, 8, 4), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)");
 
-    // velocities of the joint: before to the left of it, after to the right
-    double y = joint_page.y - 6;
-    sketch_arrow(s, (point){joint_page.x - 6, y},
-                 (point){joint_page.x - 6, y - SPEED_LENGTH * joint_before}, SLOT_GREEN);
-    sketch_dashed_arrow(s, (point){joint_page.x + 6, y},
-                        (point){joint_page.x + 6, y - SPEED_LENGTH * joint_after},
-                        SLOT_ORANGE);
-    sketch_small(s, (point){joint_page.x - 12, y - 4}, (anchor){1, 1},
-                 "before\n%.3f\u2009m/s", joint_before);
-    sketch_small(s, (point){joint_page.x + 12, y - 4}, (anchor){0, 1},
-                 "after\n%.3f\u2009m/s", joint_after);
-
-    // the tip arrives, and is stopped by the wall's impulse
-    sketch_arrow(s, shifted(contact, -8, 6 + SPEED_LENGTH * tip_before),
-                 shifted(contact, -8, 6), SLOT_GREEN);
-    sketch_small(s, shifted(contact, -14, 14), (anchor){1, 0},
-                 "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
-    sketch_arrow(s, shifted(contact, 0, -50), shifted(contact, 0, -6), SLOT_VERMILLION);
-    sketch_small(s, shifted(contact, 0, -53), (anchor){0.5, 1}, "impulse %.4f\u2009N·s",
-                 d->impulse);
+    // how their ends move
+    const double joint_before = l * d->before.velocity[1];
+    draw_joint_velocities(s, joint, joint_before, l * d->after[1]);
+    draw_tip_stop(s, contact, joint_before + l * d->before.velocity[2], d->impulse);
 
     // where the last body is cut free
-    sketch_dashed(s, shifted(joint_page, 0, -12), shifted(joint_page, 0, 34),
-                  SKETCH_FAINT);
-    sketch_small(s, shifted(joint_page, -4, 34), (anchor){1, 1}, "cut");
+    sketch_dashed(s, shifted(joint, 0, -12), shifted(joint, 0, 34), SKETCH_FAINT);
+    sketch_small(s, shifted(joint, -4, 34), (anchor){1, 1}, "cut");
 }
 
 // An arc between two angles with a head that points as `sense` turns.
@@ -399,11 +418,14 @@ static arc turning_arc(point centre, double radius, double low, double high, dou
 static void draw_cut_body(sketch *s, const diagram *d)
 {
     const cut_body b = cut_last_body(d);
-    double y = s->bottom - 66, metre = BODY_LENGTH / (2 * b.half);
-    point centre = {s->left + 74 + BODY_LENGTH / 2, y};
-    point hinge = {centre.x - metre * b.half, y}, hit = {centre.x + metre * b.rho, y};
+    const double y = s->bottom - 66, metre = BODY_LENGTH / (2 * b.half);
+    const point centre = {s->left + 74 + BODY_LENGTH / 2, y};
+    const point hinge = {centre.x - metre * b.half, y};
+    const point end = {centre.x + metre * b.half, y};
+    const point hit = {centre.x + metre * b.rho, y};
 
-    sketch_bar(s, hinge, (point){centre.x + metre * b.half, y}, 9);
+    // the body, its centre of mass and the point of collision
+    sketch_bar(s, hinge, end, 9);
     sketch_mass_point(s, centre);
     sketch_disc(s, hinge, 2.6, SKETCH_INK, true);
     sketch_label(s, (point){centre.x - 5, y - 7}, (anchor){1, 1}, "<i>C</i>");
@@ -420,10 +442,12 @@ static void draw_cut_body(sketch *s, const diagram *d)
     put_value(s, (point){hinge.x, y - 14 - fabs(pin)}, 0.5, "<i>X̂</i><sup>c</sup>",
               b.hinge_impulse, "N s");
 
-    // the hinge's torque about C, and how the body's motion jumps
+    // the hinge's torque about C
     sketch_arc(s, turning_arc(hinge, 18, 2.6, 3.7, b.hinge_torque), SLOT_BLUE);
     put_value(s, (point){hinge.x - 4, y + 44}, 0.5, "<i>Ŷ</i><sup>c</sup>",
               b.hinge_torque, "N m s");
+
+    // how the centre's velocity and the angular velocity jump
     const double jump = SPEED_LENGTH * b.centre_jump;
     double from = y - 7;
     if (b.centre_jump < 0) {
@@ -444,7 +468,7 @@ static void draw_cut_body(sketch *s, const diagram *d)
 
 static void draw_collision(sketch *s, const diagram *d)
 {
-    draw_arm(s, d);
+    draw_hitting_arm(s, d);
     draw_cut_body(s, d);
 }
 
