@@ -79,10 +79,14 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
     owned_figure *o = fig.plot;
     figure_panel *panel = &o->panels[0];
     const summary *m = &fig.run->result.summary;
+
+    // a pulse that does not end is shown to its peak
     double pulse = m->first_pulse_s;
     if (!isfinite(pulse)) {
         pulse = fig.peak_time - fig.contact;
     }
+
+    // the force, with room for the measure of T above its peak
     add_recorded_signal(&fig, 0, "force", NULL);
     panel->y.label = "Contact force <i>f</i>";
     panel->weight = 1.7;
@@ -95,6 +99,7 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
     panel->impulse_label = "Impulse <i>p</i>";
     panel->impulse_unit = "N s";
 
+    // the peak
     panel->levels =
         OWNED(o, figure_level, fig.peak,
               owned_figure_printf(o, "<i>f</i><sub>max</sub> = %.3g\u2009N", fig.peak));
@@ -186,55 +191,81 @@ static double departure(const impact_figure *fig, const char *name, const assump
     return most;
 }
 
+// What a figure shows of the assumed motion: velocities or angles, of the first link and
+// of the last one.
+typedef struct assumed_kind {
+    bool of_angle;
+    const char *signals[PANELS], *labels[PANELS];
+    const char *approximation; // in the legend
+    const char *sentence;      // of the caption
+    const char *unit;
+} assumed_kind;
+
+static const assumed_kind assumed_kinds[] = {
+    {
+        .of_angle = false,
+        .signals = {"first_velocity", "last_velocity"},
+        .labels = {"Angular velocity <i>θ̇</i><sub>2</sub>",
+                   "Angular velocity <i>θ̇</i><sub>3</sub>"},
+        .approximation = "linear approximation",
+        .sentence =
+            "The predictors assume that velocities fall to zero in a straight line",
+        .unit = "rad/s",
+    },
+    {
+        .of_angle = true,
+        .signals = {"first_angle", "last_angle"},
+        .labels = {"Angle <i>θ</i><sub>2</sub>", "Angle <i>θ</i><sub>3</sub>"},
+        .approximation = "quadratic approximation (4.19)",
+        .sentence =
+            "The angles that belong to velocities falling to zero in a straight line",
+        .unit = "rad",
+    },
+};
+
+// The computed and the assumed motion of a body in a panel. Returns their largest
+// distance. The first panel's legend is that of both, so both have its colours.
+static double add_motion(impact_figure *fig, int panel, const assumed_kind *kind,
+                         const assumption *a)
+{
+    const char *computed = NULL, *approximation = NULL;
+    if (panel == 0) {
+        computed = "computed";
+        approximation = kind->approximation;
+    }
+    const char *name = kind->signals[panel];
+    add_recorded_signal(fig, panel, name, computed)->colour = SLOT_BLUE;
+    add_assumption(fig, panel, a, approximation);
+    fig->plot->panels[panel].y.label = kind->labels[panel];
+    return departure(fig, name, a);
+}
+
 status assumed_motion(const figure_order *order, artwork *out, fault *f)
 {
-    static const char *const signals[2][PANELS] = {{"first_velocity", "last_velocity"},
-                                                   {"first_angle", "last_angle"}};
-    static const char *const labels[2][PANELS] = {
-        {"Angular velocity <i>θ̇</i><sub>2</sub>",
-         "Angular velocity <i>θ̇</i><sub>3</sub>"},
-        {"Angle <i>θ</i><sub>2</sub>", "Angle <i>θ</i><sub>3</sub>"}};
-    static const char *const approximations[2] = {"linear approximation",
-                                                  "quadratic approximation (4.19)"};
-    static const char *const assumptions[2] = {
-        "The predictors assume that velocities fall to zero in a straight line",
-        "The angles that belong to velocities falling to zero in a straight line"};
-    static const char *const units[2] = {"rad/s", "rad"};
-    const bool of_angle = order->which->variant == 1;
+    const assumed_kind *kind = &assumed_kinds[order->which->variant];
     impact_figure fig = open_impact(order, PANELS, f);
     if (fig.plot == NULL) {
         return f->code;
     }
 
-    // where the assumed motion starts
+    // both links, from where the impact leaves them
     const sample *after = row_after(&fig.run->result.trace);
-    const double angles[] = {after->first_angle, after->last_angle};
-    const double velocities[] = {after->first_velocity, after->last_velocity};
+    const double period = fig.peak_time - fig.contact;
+    const assumption first = {after->first_angle, after->first_velocity, period,
+                              kind->of_angle};
+    const assumption last = {after->last_angle, after->last_velocity, period,
+                             kind->of_angle};
+    const double of_first = add_motion(&fig, 0, kind, &first);
+    const double of_last = add_motion(&fig, 1, kind, &last);
 
-    double most[PANELS], period = fig.peak_time - fig.contact;
-    for (int i = 0; i < PANELS; i++) {
-        const char *name = signals[of_angle][i];
-        const assumption a = {angles[i], velocities[i], period, of_angle};
-
-        // the first panel's legend is that of both, so both have its colours
-        const char *computed = NULL, *approximation = NULL;
-        if (i == 0) {
-            computed = "computed";
-            approximation = approximations[of_angle];
-        }
-        add_recorded_signal(&fig, i, name, computed)->colour = SLOT_BLUE;
-        add_assumption(&fig, i, &a, approximation);
-        most[i] = departure(&fig, name, &a);
-        fig.plot->panels[i].y.label = labels[of_angle][i];
-    }
-
+    // the page
     show_pulse(&fig, fig.contact - 0.4 * period, fig.contact + 1.4 * period);
     fig.plot->figure.caption = owned_figure_printf(
         fig.plot,
         "First and last link of corrected/first-impact from first contact to "
         "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
         "departure between them: %.2g and %.2g\u2009%s.",
-        1e3 * period, assumptions[of_angle], most[0], most[1], units[of_angle]);
+        1e3 * period, kind->sentence, of_first, of_last, kind->unit);
     *out = artwork_of_owned(fig.plot);
     return STATUS_OK;
 }

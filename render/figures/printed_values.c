@@ -36,69 +36,78 @@ static const printed_quantity delays[] = {{"delay_dynamics", "impact dynamics",
 static const printed_kind kinds[] = {{"force", "Peak force", "N", 1, forces, 3},
                                      {"delay", "Delay", "ms", 1e3, delays, 2}};
 
-// The points and lines of a table, and the panel of their distances.
+// A quantity of a table: its points and its line in one panel, and how far the points are
+// from it in another.
+static void add_quantity(owned_figure *plot, const printed_kind *kind, int index,
+                         const double *voltage, const table_row *row, int values_panel,
+                         int residuals_panel)
+{
+    const printed_quantity *of = &kind->quantities[index];
+    double *printed = owned_figure_numbers(plot, TABLE_VOLTAGES);
+    double *computed = owned_figure_numbers(plot, TABLE_VOLTAGES);
+    double *residual = owned_figure_numbers(plot, TABLE_VOLTAGES); // [% of the thesis's]
+    for (int i = 0; i < TABLE_VOLTAGES; i++) {
+        printed[i] = kind->scale * row->printed[i];
+        computed[i] = kind->scale * row->computed[i];
+        residual[i] = 100 * (computed[i] / printed[i] - 1);
+    }
+
+    // all lines first, so that points lie on them
+    const figure_series line = {of->key,          NULL,           voltage,
+                                computed,         TABLE_VOLTAGES, .colour = of->colour,
+                                .secondary = true};
+    const char *name = owned_figure_printf(plot, "%s printed", of->key);
+    const figure_series points = {name,
+                                  of->label,
+                                  voltage,
+                                  printed,
+                                  TABLE_VOLTAGES,
+                                  .colour = of->colour,
+                                  .no_line = true,
+                                  .marker = of->marker,
+                                  .radius = POINT_RADIUS};
+    plot->series[values_panel][index] = line;
+    plot->series[values_panel][kind->count + index] = points;
+    plot->series[residuals_panel][index] = points;
+    plot->series[residuals_panel][index].y = residual;
+}
+
+// The two panels of a table: values and residuals.
 static void add_table_panels(owned_figure *plot, const printed_kind *kind,
                              const double *voltage, const table_row *const *rows,
-                             figure_panel *shown, figure_panel *distances)
+                             int values_panel, int residuals_panel)
 {
     static const figure_level zero = {0};
-    int panel = (int)(shown - plot->panels), below = (int)(distances - plot->panels);
-    figure_series *lines = plot->series[panel], *points = lines + kind->count;
-    for (int q = 0; q < kind->count; q++) {
-        const printed_quantity *of = &kind->quantities[q];
-        double *printed = owned_figure_numbers(plot, TABLE_VOLTAGES);
-        double *computed = owned_figure_numbers(plot, TABLE_VOLTAGES);
-        double *residual =
-            owned_figure_numbers(plot, TABLE_VOLTAGES); // [% of the thesis's]
-        for (int i = 0; i < TABLE_VOLTAGES; i++) {
-            printed[i] = kind->scale * rows[q]->printed[i];
-            computed[i] = kind->scale * rows[q]->computed[i];
-            residual[i] = 100 * (computed[i] / printed[i] - 1);
-        }
-
-        // lines first, so that points lie on them
-        const char *thesis = owned_figure_printf(plot, "%s printed", of->key);
-        lines[q] = (figure_series){of->key,          NULL,           voltage,
-                                   computed,         TABLE_VOLTAGES, .colour = of->colour,
-                                   .secondary = true};
-        points[q] = (figure_series){thesis,
-                                    of->label,
-                                    voltage,
-                                    printed,
-                                    TABLE_VOLTAGES,
-                                    .colour = of->colour,
-                                    .no_line = true,
-                                    .marker = of->marker,
-                                    .radius = POINT_RADIUS};
-        plot->series[below][q] = points[q];
-        plot->series[below][q].y = residual;
+    for (int i = 0; i < kind->count; i++) {
+        add_quantity(plot, kind, i, voltage, rows[i], values_panel, residuals_panel);
     }
 
     // the names are those of the CSV
-    double factor = rows[0]->k2_factor;
+    const double factor = rows[0]->k2_factor;
+    const char *heading = owned_figure_printf(plot, "Table %s: <i>k</i><sub>2</sub> × %g",
+                                              rows[0]->table, factor);
     const char *name = owned_figure_printf(plot, "%s k2 x %g", kind->name, factor);
-    const char *distance = owned_figure_printf(plot, "residual k2 x %g", factor);
+    const char *residual = owned_figure_printf(plot, "residual k2 x %g", factor);
 
-    // 1, 2, 5, 10 V are nearly even on a logarithmic axis
-    *shown = (figure_panel){
-        owned_figure_printf(plot, "Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table,
-                            factor),
+    plot->panels[values_panel] = (figure_panel){
+        heading,
         .weight = VALUES_WEIGHT,
         .keyless = true,
         .y = {.name = name, .label = kind->axis, .unit = kind->unit, .with_zero = true},
-        .series = lines,
+        .series = plot->series[values_panel],
         .series_count = 2 * kind->count};
-    *distances = (figure_panel){.weight = RESIDUALS_WEIGHT,
-                                .keyless = true,
-                                .levels = &zero,
-                                .level_count = 1,
-                                .y = {.name = distance,
-                                      .label = "Residual",
-                                      .unit = "%",
-                                      .with_zero = true,
-                                      .room = 0.12},
-                                .series = plot->series[below],
-                                .series_count = kind->count};
+    plot->panels[residuals_panel] =
+        (figure_panel){.weight = RESIDUALS_WEIGHT,
+                       .keyless = true,
+                       .levels = &zero,
+                       .level_count = 1,
+                       .y = {.name = residual,
+                             .label = "Residual",
+                             .unit = "%",
+                             .with_zero = true,
+                             .room = 0.12},
+                       .series = plot->series[residuals_panel],
+                       .series_count = kind->count};
 }
 
 status printed_values_figure(const figure_order *order, artwork *out, fault *f)
@@ -111,6 +120,7 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
         return f->code;
     }
 
+    // the page; 1, 2, 5, 10 V are nearly even on a logarithmic axis
     owned_figure *plot = owned_figure_create(PANELS, "%s", order->title);
     figure *fig = &plot->figure;
     fig->caption = owned_figure_printf(
@@ -143,8 +153,8 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
         for (int q = 0; q < kind->count; q++) {
             rows[q] = computed_row(all, tables[t], "printed", kind->quantities[q].key);
         }
-        figure_panel *shown = &plot->panels[panels_a_table * t];
-        add_table_panels(plot, kind, all->voltage, rows, shown, shown + to_residuals);
+        const int panel = panels_a_table * t;
+        add_table_panels(plot, kind, all->voltage, rows, panel, panel + to_residuals);
     }
 
     *out = artwork_of_owned(plot);

@@ -14,9 +14,14 @@ const thesis_tables *computed_tables(fault *f)
 {
     static thesis_tables tables;
     static bool done;
+    const thesis_tables *computed = NULL;
     G_LOCK(tables);
-    done = done || tables_compute(&tables, f) == STATUS_OK;
-    const thesis_tables *computed = done ? &tables : NULL;
+    if (!done) {
+        done = tables_compute(&tables, f) == STATUS_OK;
+    }
+    if (done) {
+        computed = &tables;
+    }
     G_UNLOCK(tables);
     return computed;
 }
@@ -76,6 +81,18 @@ static const struct {
     {"", "10\u2009V (section 2.3)", "motor.voltage_limit"},
 };
 
+// A parameter's value with six digits and its unit.
+static char *value_with_unit(const parameters *p, const parameter_info *info)
+{
+    g_autofree char *unit = text_unit(info->unit);
+    const char *sign = unit;
+    if (strcmp(unit, "ohm") == 0) {
+        sign = "Ω";
+    }
+    const double value = parameter_get(p, parameter_find(info->path));
+    return text_printf("%.6g\u2009%s", value, sign);
+}
+
 status table_motor(const figure_order *order, artwork *out, fault *f)
 {
     static const table_column columns[] = {{"Symbol", 0.75},
@@ -89,15 +106,15 @@ status table_motor(const figure_order *order, artwork *out, fault *f)
     // a parameter's description beside its row, or above it
     const page_look *look = &order->options->look;
     const bool above = look->width > 0 && look->width < DESCRIPTIONS_BESIDE;
-    const size_t beside = above ? 3 : 4;
-    table_page *t = new_table(order, columns, beside);
+    size_t column_count = G_N_ELEMENTS(columns);
+    if (above) {
+        column_count--;
+    }
+
+    table_page *t = new_table(order, columns, column_count);
     for (size_t i = 0; i < G_N_ELEMENTS(constants); i++) {
-        const int index = parameter_find(constants[i].path);
-        const parameter_info *info = &parameter_table[index];
-        g_autofree char *unit = text_unit(info->unit);
-        const char *sign = strcmp(unit, "ohm") == 0 ? "Ω" : unit;
-        g_autofree char *used =
-            text_printf("%.6g\u2009%s", parameter_get(&p, index), sign);
+        const parameter_info *info = &parameter_table[parameter_find(constants[i].path)];
+        g_autofree char *used = value_with_unit(&p, info);
         g_autofree char *name = text_printf("%s: %s", info->path, info->description);
         if (above) {
             table_add_group(t, name);
@@ -131,22 +148,31 @@ static void add_pair(table_page *t, const char *name, double beta, double gamma,
     table_add_row(t, (const char *[]){name, pair, bound, step, consistency});
 }
 
-status table_stability(const figure_order *order, artwork *out, fault *f)
+// Frequency of the fastest mode of hub and two links with a hub spring [rad/s].
+static status find_fastest_mode(double *fastest, fault *f)
 {
     arm a;
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     TRY(parameter_set_text(&p, PARAMETER_INDEX(arm.hub_joint), "spring", f));
     TRY(parameters_resolve(&p, f));
-    // hub and two links: three modes, the last is the fastest
+    arm_init(&a, &p);
+
+    // three bodies have three modes, the last is the fastest
     double frequencies[3], shapes[9];
     int count = 0;
-    arm_init(&a, &p);
-    FAULT_IF(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes) !=
-                     STATUS_OK ||
-                 count < 1,
-             f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed");
-    double fastest = frequencies[count - 1];
+    const status code =
+        modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes);
+    FAULT_IF(code != STATUS_OK || count < 1, f, STATUS_SINGULAR,
+             "the modes of the two-link arm cannot be computed");
+    *fastest = frequencies[count - 1];
+    return STATUS_OK;
+}
+
+status table_stability(const figure_order *order, artwork *out, fault *f)
+{
+    double fastest = 0;
+    TRY(find_fastest_mode(&fastest, f));
 
     static const table_column columns[] = {{"Method", 2.3},
                                            {"<i>β</i>, <i>γ</i>", 1.5},
@@ -285,18 +311,18 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
         const table_row *corrected =
             computed_row(all, table, "corrected", quantities[q].quantity);
 
-        // forces in newtons, delays in milliseconds, which the thesis rounds
-        double scale = 1;
-        const char *format = "%.2f", *printed_format = "%.2f";
-        if (strncmp(quantities[q].quantity, "delay", 5) == 0) {
-            scale = 1e3;
-            format = "%.1f";
-            printed_format = "%.0f";
-        }
+        // what the thesis prints, then both models
         table_add_group(t, quantities[q].label);
-        add_values(t, "thesis", printed->printed, scale, printed_format);
-        add_model(t, printed, scale, format);
-        add_model(t, corrected, scale, format);
+        if (g_str_has_prefix(quantities[q].quantity, "delay")) {
+            // in milliseconds, which the thesis rounds
+            add_values(t, "thesis", printed->printed, 1e3, "%.0f");
+            add_model(t, printed, 1e3, "%.1f");
+            add_model(t, corrected, 1e3, "%.1f");
+        } else {
+            add_values(t, "thesis", printed->printed, 1, "%.2f");
+            add_model(t, printed, 1, "%.2f");
+            add_model(t, corrected, 1, "%.2f");
+        }
     }
 
     t->parameters = text_printf("table=%s", table);
