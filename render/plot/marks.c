@@ -5,13 +5,15 @@
 #include "render/page/sketch.h"
 #include "render/plot/drawing.h"
 
-#define LEVEL_ROOM   10.0 // above a level, for its label [pt]
-#define NOTE_SPACE   4.0  // from a note to its point [pt]
-#define DOT_RADIUS   1.3  // of the point of a note or a mark [pt]
-#define INSIDE_SHARE 0.75 // of the first panel's height, where labels of marks may stand
+#define LEVEL_ROOM    10.0 // above a level, for its label [pt]
+#define NOTE_SPACE    4.0  // from a note to its point [pt]
+#define DOT_RADIUS    1.3  // of the point of a note or a mark [pt]
+#define INSIDE_SHARE  0.75 // of the first panel's height, where labels of marks may stand
 
-#define POINT_SPACE  2.5 // from a mark's point to its label [pt]
-#define ARROW        "\u2009\u2192"
+#define POINT_SPACE   2.5 // from a mark's point to its label [pt]
+#define LINE_SPACE    2.0 // from its line to its label
+#define LABEL_SPACING 3.0 // least distance of labels of marks in a row
+#define ARROW         "\u2009\u2192"
 
 enum {
     INSIDE_MOST = 6, // labels of marks inside the first panel
@@ -34,54 +36,79 @@ static bool has_point(const drawing *d, const figure_mark *m)
 
 // ---- where labels go
 
+// What labels of marks above the panels take up, from left to right [pt].
+typedef struct mark_labels {
+    double begins[MARKS_LABELLED], ends[MARKS_LABELLED];
+    bool placed[MARKS_LABELLED];
+    int count;
+} mark_labels;
+
+// The rightmost mark that is not placed.
+static int next_mark(const drawing *d, const mark_labels *l)
+{
+    int next = -1;
+    for (int i = 0; i < l->count; i++) {
+        if (!l->placed[i] && (next < 0 || d->fig->marks[i].x >= d->fig->marks[next].x)) {
+            next = i;
+        }
+    }
+    return next;
+}
+
+// Puts a label at the right of its line if the page has room there, or else at its left.
+static void place_beside_line(const drawing *d, mark_labels *l, int index)
+{
+    const figure_mark *m = &d->fig->marks[index];
+    const double x = plane_x(&d->panels[0].plane, m->x);
+    double width = width_of(d, m->label, d->style.small);
+    l->begins[index] = x + LINE_SPACE;
+    if (l->begins[index] + width > d->page.width - PAGE_MARGIN) {
+        if (m->onwards) {
+            width += width_of(d, ARROW, d->style.small);
+        }
+        l->begins[index] = x - LINE_SPACE - width;
+    }
+    l->ends[index] = l->begins[index] + width;
+}
+
+// The lowest row in which a label is above every other that it or its line would meet.
+static int row_above(const drawing *d, const mark_labels *l, int index)
+{
+    const double begins = l->begins[index], ends = l->ends[index];
+    int row = 0;
+    for (int i = 0; i < l->count; i++) {
+        if (i != index && l->placed[i] && d->mark_row[i] >= row &&
+            ends + LABEL_SPACING > l->begins[i] - LINE_SPACE &&
+            begins < l->ends[i] + LABEL_SPACING) {
+            row = d->mark_row[i] + 1;
+        }
+    }
+    return row;
+}
+
 // Labels of marks stand like flags at the right of their lines. Where one would meet the
 // next flag or its line it goes a row higher, so that no line crosses a label. Returns
 // the number of rows.
 int place_marks(drawing *d)
 {
-    const int count = MIN(d->fig->mark_count, MARKS_LABELLED);
+    mark_labels l = {.count = MIN(d->fig->mark_count, MARKS_LABELLED)};
     int rows = 0;
-    double begins[MARKS_LABELLED], ends[MARKS_LABELLED];
-    bool done[MARKS_LABELLED] = {false};
-    for (int n = 0; n < count; n++) {
-        // the rightmost that is left
-        int next = -1;
-        for (int i = 0; i < count; i++) {
-            if (!done[i] && (next < 0 || d->fig->marks[i].x >= d->fig->marks[next].x)) {
-                next = i;
-            }
-        }
-        done[next] = true;
 
-        // at the right of its line if the page has room there
-        const figure_mark *m = &d->fig->marks[next];
-        d->mark_row[next] = -1;
-        begins[next] = ends[next] = -1;
-        if (m->label == NULL || !scale_holds(&d->x.scale, m->x) || at_point(d, next)) {
+    // from the right to the left
+    for (int index = next_mark(d, &l); index >= 0; index = next_mark(d, &l)) {
+        const figure_mark *m = &d->fig->marks[index];
+        d->mark_row[index] = -1;
+        l.placed[index] = true;
+        l.begins[index] = l.ends[index] = -1;
+        if (m->label == NULL || !scale_holds(&d->x.scale, m->x) || at_point(d, index)) {
             continue;
         }
-        double x = plane_x(&d->panels[0].plane, m->x),
-               width = width_of(d, m->label, d->style.small);
-        begins[next] = x + 2;
-        if (begins[next] + width > d->page.width - PAGE_MARGIN) {
-            if (m->onwards) {
-                width += width_of(d, ARROW, d->style.small);
-            }
-            begins[next] = x - 2 - width;
-        }
-        ends[next] = begins[next] + width;
 
-        // above every label it would meet
-        int row = 0;
-        for (int i = 0; i < count; i++) {
-            if (i != next && done[i] && d->mark_row[i] >= row &&
-                ends[next] + 3 > begins[i] - 2 && begins[next] < ends[i] + 3) {
-                row = d->mark_row[i] + 1;
-            }
-        }
-        d->mark_text_x[next] = begins[next];
+        place_beside_line(d, &l, index);
+        d->mark_text_x[index] = l.begins[index];
+        const int row = row_above(d, &l, index);
         if (row < MARK_ROWS) {
-            d->mark_row[next] = row;
+            d->mark_row[index] = row;
             rows = MAX(rows, row + 1);
         }
     }
@@ -95,7 +122,7 @@ static bool crosses_line(const drawing *d, const figure_rect *r, int index)
 {
     for (int i = 0; i < d->fig->mark_count; i++) {
         double x = plane_x(&d->panels[0].plane, d->fig->marks[i].x);
-        if (i != index && x > r->x - 2 && x < r->x + r->width + 2) {
+        if (i != index && x > r->x - LINE_SPACE && x < r->x + r->width + LINE_SPACE) {
             return true;
         }
     }
@@ -124,7 +151,7 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
     const double width = width_of(d, m->label, d->style.small);
 
     // from above, at the right of its line, then at the left
-    const double lefts[] = {x + 2, x - 2 - width};
+    const double lefts[] = {x + LINE_SPACE, x - LINE_SPACE - width};
     const int sides = m->onwards ? 1 : 2;
     for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height;
          y += MARK_ROW) {
@@ -132,7 +159,7 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
             figure_rect r = {lefts[side], y, width, MARK_ROW};
             bool fits = label_fits(d, grid, &r, index, false);
             for (int i = 0; i < taken_count && fits; i++) {
-                fits = !rects_meet(&r, &taken[i], 3);
+                fits = !rects_meet(&r, &taken[i], LABEL_SPACING);
             }
             if (fits) {
                 *found = r;
@@ -156,15 +183,16 @@ static bool find_at_point(const drawing *d, const placement *grid, int index,
 
     // rows ever farther away, each first off other marks' lines, then over them
     const double lefts[] = {x + POINT_SPACE, x - POINT_SPACE - width};
-    for (int k = 0; k < 2 * POINT_ROWS; k++) {
-        const bool over_lines = k % 2 == 1;
-        const double away = POINT_SPACE + k / 2 * MARK_ROW;
+    for (int row = 0; row < POINT_ROWS; row++) {
+        const double away = POINT_SPACE + row * MARK_ROW;
         const double tops[] = {y - away - MARK_ROW, y - MARK_ROW / 2, y + away};
-        for (int place = 0; place < 6; place++) {
-            figure_rect r = {lefts[place % 2], tops[place / 2], width, MARK_ROW};
-            if (label_fits(d, grid, &r, index, over_lines)) {
-                *found = r;
-                return true;
+        for (int over_lines = 0; over_lines < 2; over_lines++) {
+            for (int place = 0; place < 6; place++) {
+                figure_rect r = {lefts[place % 2], tops[place / 2], width, MARK_ROW};
+                if (label_fits(d, grid, &r, index, over_lines == 1)) {
+                    *found = r;
+                    return true;
+                }
             }
         }
     }
@@ -417,15 +445,22 @@ void draw_measure(drawing *d)
 {
     const figure_measure *m = d->fig->measure;
     const plane *p = &d->panels[0].plane;
-    if (m != NULL) {
-        sketch s = {d->cr,         d->context,          d->style.colours,
-                    d->fig->theme, .report = d->report, .scale = 1};
-        const point from = {plane_x(p, m->from), plane_y(p, m->y)},
-                    to = {plane_x(p, m->to), from.y};
-        sketch_measure(&s, from, to);
-        sketch_small(&s, (point){(from.x + to.x) / 2, from.y - 2}, (anchor){0.5, 1}, "%s",
-                     m->label);
+    if (m == NULL) {
+        return;
     }
+
+    // with the pen of diagrams
+    sketch s = {.cr = d->cr,
+                .context = d->context,
+                .colours = d->style.colours,
+                .theme = d->fig->theme,
+                .report = d->report,
+                .scale = 1};
+    const point from = {plane_x(p, m->from), plane_y(p, m->y)};
+    const point to = {plane_x(p, m->to), from.y};
+    sketch_measure(&s, from, to);
+    sketch_small(&s, (point){(from.x + to.x) / 2, from.y - 2}, (anchor){0.5, 1}, "%s",
+                 m->label);
 }
 
 // The label of a mark above the panels, whose line is at x in the first column; returns
@@ -435,7 +470,8 @@ static double draw_flag(drawing *d, int index, double x, double shift)
     const figure_mark *m = &d->fig->marks[index];
     const double row = d->marks_bottom - MARK_ROW * (d->mark_row[index] + 1);
     const bool before = m->onwards && d->mark_text_x[index] < x;
-    g_autofree char *label = g_strconcat(m->label, before ? ARROW : "", NULL);
+    const char *arrow = before ? ARROW : "";
+    g_autofree char *label = g_strconcat(m->label, arrow, NULL);
     put_label(d, label, d->style.small, d->mark_text_x[index] + shift, row,
               (anchor){0, 0});
     return row + 1;

@@ -205,53 +205,61 @@ static bool straighten(wish *w)
     return true;
 }
 
+// Values of all ticks: those of a labelling, and every other multiple of its step on the
+// axis.
+static void fill_values(ticks *t, const labelling *best, const wish *w)
+{
+    const double unit = step_unit(best), slack = 1e-9 * (w->high - w->low);
+    double first = best->start;
+    while ((first - best->j) * unit >= w->low - slack) {
+        first -= best->j;
+    }
+    t->count = (int)floor((w->high + slack - first * unit) / (best->j * unit)) + 1;
+    if (t->count > TICKS_MOST) {
+        t->count = TICKS_MOST;
+    }
+
+    for (int i = 0; i < t->count; i++) {
+        t->value[i] = tick_value(best, first + (double)i * best->j);
+        if (t->value[i] == 0) {
+            t->value[i] = 0; // no minus zero
+        }
+    }
+    if (t->count > 1) {
+        t->step = tick_value(best, best->j);
+    }
+}
+
+// The power of ten by which labels are divided: long rows of zeros go into a factor.
+static int label_exponent(const ticks *t)
+{
+    double largest = 0;
+    for (int i = 0; i < t->count; i++) {
+        largest = fmax(largest, fabs(t->value[i]));
+    }
+    if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
+        return 3 * (int)floor(log10(largest) / 3);
+    }
+    return 0;
+}
+
 void ticks_between(ticks *t, double low, double high, int wanted)
 {
     wish w = {low, high, wanted};
     memset(t, 0, sizeof *t);
     t->minor = 1;
-
     if (!straighten(&w)) {
         return;
     }
-
-    // the best labelling
-    labelling best = best_labelling(&w);
-    double unit = step_unit(&best), slack = 1e-9 * (w.high - w.low);
-    double first = best.start;
-
-    // and every other multiple of its step on the axis
-    while ((first - best.j) * unit >= w.low - slack) {
-        first -= best.j;
-    }
-    t->count = (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1;
-    if (t->count > TICKS_MOST) {
-        t->count = TICKS_MOST;
-    }
-
-    // their values
-    double largest = 0;
-    for (int i = 0; i < t->count; i++) {
-        t->value[i] = tick_value(&best, first + (double)i * best.j);
-        if (t->value[i] == 0) {
-            t->value[i] = 0; // no minus zero
-        }
-        largest = fmax(largest, fabs(t->value[i]));
-    }
-    if (t->count > 1) {
-        t->step = tick_value(&best, best.j);
-    }
+    const labelling best = best_labelling(&w);
+    fill_values(t, &best, &w);
 
     // minor ticks fall on rounder numbers than the step itself
     static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
     if (best.j == 1) {
         t->minor = parts[best.nice];
     }
-
-    // long rows of zeros go into a factor
-    if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
-        t->exponent = 3 * (int)floor(log10(largest) / 3);
-    }
+    t->exponent = label_exponent(t);
     t->decimals = decimals_needed(t);
 }
 

@@ -81,6 +81,8 @@ static void mark_contact(owned_figure *o, GArray *marks, const trace_run *run)
     const trace *rows = &run->result->trace;
     const summary *m = &run->result->summary;
     const double from = m->first_contact_s, peak = m->first_pulse_peak_N;
+
+    // the first pulse
     if (isfinite(from)) {
         add_mark(marks, (figure_mark){.x = from, .label = "contact"});
     }
@@ -95,6 +97,8 @@ static void mark_contact(owned_figure *o, GArray *marks, const trace_run *run)
     if (isfinite(m->first_pulse_s)) {
         add_mark(marks, (figure_mark){.x = from + m->first_pulse_s, .label = "release"});
     }
+
+    // actions of the script
     for (size_t i = 0; i < rows->event_count && marks->len < TRACE_MARKS; i++) {
         char *label = action_label(run->scenario, &rows->events[i]);
         if (label != NULL) {
@@ -166,22 +170,27 @@ bool trace_shows(const trace_run *run, const trace_panel *panel, int index)
     return !twin && !(run->points && !trace_has(&run->result->trace, index));
 }
 
+enum { PEAKS = 2 };
+
 // The force with its peaks, of the first pulse and of the whole run, among the rows that
 // they lie between, so that no mark stands above the curve.
 static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
 {
+    // the first pulse's, and the whole run's where it comes later
     const double first = m->first_contact_s + m->first_pulse_time_to_peak_s;
-    const double at[] = {first, m->first_contact_s + m->time_to_peak_s};
-    const double height[] = {m->first_pulse_peak_N, m->peak_force_N};
-    double *x = owned_figure_numbers(o, s->count + 2);
-    double *y = owned_figure_numbers(o, s->count + 2);
+    const double whole = m->first_contact_s + m->time_to_peak_s;
+    const double at[PEAKS] = {first, whole};
+    const double height[PEAKS] = {m->first_pulse_peak_N, m->peak_force_N};
+    const int peaks = whole <= first ? 1 : PEAKS;
+
+    // each row, and before it the peaks since the last one
+    double *x = owned_figure_numbers(o, s->count + PEAKS);
+    double *y = owned_figure_numbers(o, s->count + PEAKS);
     size_t out = 0;
     for (size_t i = 0; i < s->count; i++) {
-        // the whole run's comes later, or it is the first pulse's
-        for (int k = 0; k < 2 && i > 0; k++) {
-            const bool again = k == 1 && at[1] <= first;
+        for (int k = 0; k < peaks && i > 0; k++) {
             if (at[k] > series_x(s, i - 1) && at[k] < series_x(s, i) &&
-                isfinite(height[k]) && !again) {
+                isfinite(height[k])) {
                 x[out] = at[k];
                 y[out++] = height[k];
             }
@@ -251,6 +260,7 @@ static int signal_of(const csv_table *table, const char *column,
     if (named >= 0 || at < 0) {
         return named;
     }
+
     // its unit, "[N]" of its heading
     char unit[32] = "";
     const char *bracket = strrchr(table->headings[at], '[');
@@ -258,6 +268,8 @@ static int signal_of(const csv_table *table, const char *column,
         snprintf(unit, sizeof unit, "%s", bracket + 1);
     }
     unit[strcspn(unit, "]")] = '\0';
+
+    // the first signal with that unit
     for (int i = 0; i < count; i++) {
         int index = signal_find(panels[i].signals[0]);
         if (index > 0 && strcmp(signal_table[index].unit, unit) == 0) {
@@ -284,6 +296,7 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
         *name = g_strdup(file);
     }
 
+    // its rows, of one column or of all that are signals
     int signal = 0;
     if (column != NULL) {
         signal = signal_of(&table, column, panels, panel_count);
