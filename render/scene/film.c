@@ -6,7 +6,9 @@
 
 #include "render/plot/trace_plot.h"
 
-static status check_film_options(const film_options *o, fault *f)
+// What an option of the command cannot refuse by its range.
+static status check_film(const film_options *o, const film_run *runs, int run_count,
+                         fault *f)
 {
     FAULT_IF(
         o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
@@ -15,18 +17,10 @@ static status check_film_options(const film_options *o, fault *f)
         "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x 4096",
         o->width, o->height);
 
-    FAULT_IF(o->frames_per_second < 1 || o->frames_per_second > 120, f,
-             STATUS_BAD_ARGUMENT, "%d frames per second, expected 1 to 120",
-             o->frames_per_second);
-
-    FAULT_IF(!(o->seconds >= 0.1 && o->seconds <= 3600), f, STATUS_BAD_ARGUMENT,
-             "a film of %g s, expected 0.1 to 3600", o->seconds);
-
-    FAULT_IF(o->ghosts < 0 || o->ghosts >= SCENE_INSTANTS, f, STATUS_BAD_ARGUMENT,
-             "%d ghosts, expected 0 to %d", o->ghosts, SCENE_INSTANTS - 1);
-
-    FAULT_IF(!(o->slow >= 1 && o->slow <= 1000), f, STATUS_BAD_ARGUMENT,
-             "impacts slowed down %g times, expected 1 to 1000", o->slow);
+    for (int i = 0; i < run_count; i++) {
+        FAULT_IF(runs[i].result->trace.row_count == 0, f, STATUS_BAD_ARGUMENT,
+                 "the run has no rows to draw");
+    }
     return STATUS_OK;
 }
 
@@ -56,6 +50,7 @@ static status add_frames(film_painter *p, film_file *file, fault *f)
     return STATUS_OK;
 }
 
+// Writes the film into its file, which is whole or goes.
 static status write_frames(film_painter *p, const char *path, fault *f)
 {
     // the same notes as a picture's, of the first run
@@ -66,6 +61,7 @@ static status write_frames(film_painter *p, const char *path, fault *f)
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(p->scenes[0])}};
 
+    // the frames; if one fails the file is abandoned
     g_autoptr(film_file) file = NULL;
     TRY(film_file_open(&file, path, &p->options, notes, 4, f));
     TRY(add_frames(p, file, f));
@@ -76,11 +72,14 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
                   const char *path, fault *f)
 {
     assert(run_count >= 1 && run_count <= FILM_RUNS);
+
+    // what the options leave to us
     film_options o = *options;
     if (o.width == 0 && o.height == 0) {
         o.width = 1280;
         o.height = 720;
     }
+
     if (o.frames_per_second == 0) {
         o.frames_per_second = 30;
     }
@@ -92,11 +91,9 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
     }
 
     // only a film that can be painted
-    TRY(check_film_options(&o, f));
-    for (int i = 0; i < run_count; i++) {
-        FAULT_IF(runs[i].result->trace.row_count == 0, f, STATUS_BAD_ARGUMENT,
-                 "the run has no rows to draw");
-    }
+    assert(o.frames_per_second > 0 && o.seconds > 0 && o.slow >= 1);
+    assert(o.ghosts >= 0 && o.ghosts < SCENE_INSTANTS);
+    TRY(check_film(&o, runs, run_count, f));
 
     g_autoptr(film_painter) painter = NULL;
     TRY(film_painter_create(&painter, runs, run_count, &o, f));

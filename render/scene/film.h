@@ -94,7 +94,7 @@ status film_painter_palette(film_painter *p, cairo_surface_t *onto, fault *f);
 
 // Writes a film of 1 to FILM_RUNS runs over the time that all of them have (see
 // film_file_open for path), frame by frame in bounded memory. STATUS_BAD_ARGUMENT for
-// options out of range or a run without rows, STATUS_CANNOT_WRITE with the reason,
+// a size out of range or a run without rows, STATUS_CANNOT_WRITE with the reason,
 // STATUS_STOPPED if `stop` requested it.
 status film_write(const film_run *runs, int run_count, const film_options *options,
                   const char *path, fault *f);

@@ -76,16 +76,19 @@ static const film_format *format_of(const char *path)
     return NULL;
 }
 
+// Whether a folder can take the frames: it is empty, or can be made.
 static status check_folder(const char *path, fault *f)
 {
     if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
         // made later; its own folder must take it
         return whole_file_check(path, f);
     }
+
     FAULT_IF(!g_file_test(path, G_FILE_TEST_IS_DIR), f, STATUS_CANNOT_WRITE,
              "%s is a file: expected the name of a folder, or one that ends in "
              ".mp4, .webm, .gif or .webp",
              path);
+
     g_autoptr(GDir) folder = g_dir_open(path, 0, NULL);
     FAULT_IF(folder == NULL || g_dir_read_name(folder) != NULL, f, STATUS_CANNOT_WRITE,
              "the folder %s is not empty: frames of two films would mix, empty it "
@@ -105,6 +108,8 @@ status film_file_check(const char *path, fault *f)
              "'%s' is no name for a film: expected one that ends in .mp4, .webm, "
              ".gif or .webp, or a folder for PNG frames",
              path);
+
+    // PNG frames need nothing, films ffmpeg
     if (folder) {
         return check_folder(path, f);
     }
@@ -214,6 +219,7 @@ static int wait_for_encoder(film_file *film)
         close(film->pipe);
         film->pipe = -1;
     }
+
     while (film->encoder > 0 && waitpid(film->encoder, &result, WNOHANG) == 0) {
         if (is_asked_to_stop(film)) {
             kill(film->encoder, SIGKILL);
@@ -278,6 +284,7 @@ static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
     cairo_surface_flush(frame);
     const unsigned char *data = cairo_image_surface_get_data(frame);
     const ptrdiff_t stride = cairo_image_surface_get_stride(frame);
+
     for (int row = 0; row < film->options->height; row++) {
         if (!send_bytes(film, data + row * stride, 4 * (size_t)film->options->width)) {
             TRY(end_encoder(film, f));
@@ -320,6 +327,8 @@ status film_file_open(film_file **out, const char *path, const film_options *opt
     assert(options->width > 0 && options->height > 0);
     *out = NULL;
     TRY(film_file_check(path, f));
+
+    // a film that fails to open is abandoned
     g_autoptr(film_file) film = g_new0(film_file, 1);
     film->format = format_of(path);
     film->options = options;
@@ -327,6 +336,7 @@ status film_file_open(film_file **out, const char *path, const film_options *opt
     film->note_count = note_count;
     film->path = path;
     film->pipe = -1;
+
     TRY(open_target(film, f));
     *out = g_steal_pointer(&film);
     return STATUS_OK;
@@ -337,6 +347,7 @@ bool film_file_wants_palette(const film_file *film)
     return film->format != NULL && film->format->palette;
 }
 
+// Writes a frame as a picture of its own, with the next number.
 static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
 {
     whole_file file;

@@ -196,6 +196,7 @@ static void draw_gaps(const film_painter *p, cairo_t *cr)
     const pixel_box *first = &p->views[0];
     set_colour(cr, page_of(p));
     cairo_paint(cr);
+
     set_colour(cr, palette_of(p->options.view.theme)->grid);
     if (p->run_count > 1) {
         cairo_rectangle(cr, first->width, 0, GAP, p->strip.y);
@@ -227,6 +228,7 @@ static void draw_traces(const film_painter *p, cairo_t *cr, double time)
         cairo_rectangle(cr, x, panel.y, panel.x + panel.width - x, panel.height);
         cairo_set_source_rgba(cr, page.red, page.green, page.blue, VEIL);
         cairo_fill(cr);
+
         cairo_move_to(cr, x, panel.y);
         cairo_line_to(cr, x, panel.y + panel.height);
         cairo_set_line_width(cr, 1.1);
@@ -261,6 +263,7 @@ static char *describe_speed(double speed)
     return text_printf("%.0f times slower than real", slower);
 }
 
+// Says how much slower or faster than real the film runs just now.
 static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
 {
     const double scale = film_scale(p);

@@ -122,6 +122,8 @@ static void paint_floor_ground(scene *sc)
     ray_field rays = {.first = camera_ray(c, 0.5, 0.5)};
     rays.right = vector_sum(camera_ray(c, 1.5, 0.5), -1, rays.first);
     rays.down = vector_sum(camera_ray(c, 0.5, 1.5), -1, rays.first);
+
+    // each ray from the first by steps to the right and down
     for (int row = 0; row < sc->options.height; row++) {
         vector start = vector_sum(rays.first, row, rays.down);
         for (int column = 0; column < sc->options.width; column++) {
@@ -190,6 +192,7 @@ static void blur_turned(const unsigned char *from, unsigned char *to, cell_box c
     }
 }
 
+// A cell of the map, or of its edge.
 static int within_map(double cell)
 {
     if (cell < 0) {
@@ -273,6 +276,8 @@ static float shadow_at(const scene_floor *floor, float x, float y)
     if (!(u >= 0 && v >= 0 && u < MAP - 1 && v < MAP - 1)) {
         return 0;
     }
+
+    // a mean of four cells, by how near their middles are
     int i = (int)u, j = (int)v;
     float a = u - (float)i, b = v - (float)j;
     const unsigned char *at = floor->mask + (ptrdiff_t)j * MAP + i;
@@ -286,6 +291,8 @@ static cell_box seen_box(const scene *sc, cell_box cells)
     const scene_floor *floor = &sc->floor;
     const int width = sc->options.width, height = sc->options.height;
     double left = width, right = 0, top = height, bottom = 0;
+
+    // the corners of the box on the picture
     for (int i = 0; i < 4; i++) {
         const int across = i & 1 ? cells.left : cells.right;
         const int up = i & 2 ? cells.low : cells.high;
@@ -296,6 +303,7 @@ static cell_box seen_box(const scene *sc, cell_box cells)
             // it reaches behind the eye
             return (cell_box){0, width, 0, height};
         }
+
         left = fmin(left, at.x);
         right = fmax(right, at.x);
         top = fmin(top, at.y);
@@ -321,6 +329,7 @@ status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f)
     cell_box shade;
     TRY(cast_sharp_shadow(sc, &shade, f));
     soften_shadow(&sc->floor, shade);
+
     const cell_box seen = seen_box(sc, shade);
     const scene_floor *floor = &sc->floor;
     const size_t width = (size_t)sc->options.width;

@@ -147,6 +147,7 @@ void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int 
     }
 }
 
+// Into how many cells of about a size an edge is divided, of which half is given.
 static int cells_along(vector half, double cell)
 {
     double cells = ceil(2 * sqrt(vector_dot(half, half)) / cell);

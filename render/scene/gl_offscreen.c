@@ -108,6 +108,7 @@ static bool make_current(gl_offscreen *g)
 
 // ---- OSMesa
 
+// A context of OSMesa, which draws without a driver.
 static status open_osmesa(gl_offscreen *g, fault *f)
 {
     // the library, where it is installed
@@ -169,6 +170,7 @@ static void *egl_display(void *handle)
     return display;
 }
 
+// A context of EGL on a display without a screen.
 static status open_egl(gl_offscreen *g, fault *f)
 {
     static const int config_wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
@@ -209,6 +211,7 @@ static status open_egl(gl_offscreen *g, fault *f)
 
 // ---- OpenGL
 
+// Looks up the functions of OpenGL. False if one is missing.
 static bool load_functions(gl_offscreen *g)
 {
     any_function found;
@@ -222,15 +225,19 @@ static bool load_functions(gl_offscreen *g)
     return all;
 }
 
+// Gives the context a picture of its own size to draw into.
 static bool make_framebuffer(gl_offscreen *g)
 {
     // colours of 8 bits, and depths
     static const unsigned formats[] = {GL_RGBA8, GL_DEPTH_COMPONENT24};
     static const unsigned places[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
     unsigned framebuffer, buffers[2];
+
+    // a framebuffer, and buffers for both
     g->GenFramebuffers(1, &framebuffer);
     g->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     g->GenRenderbuffers(2, buffers);
+
     for (int i = 0; i < 2; i++) {
         g->BindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
         g->RenderbufferStorage(GL_RENDERBUFFER, formats[i], g->width, g->height);
@@ -240,6 +247,7 @@ static bool make_framebuffer(gl_offscreen *g)
     return g->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
+// Opens the context of a library and makes it ready to draw.
 static status prepare_offscreen(gl_offscreen *g, char name[RENDERER_NAME], fault *f)
 {
     const char *library = g->library == RENDER_OSMESA ? "OSMesa" : "EGL";

@@ -115,6 +115,8 @@ static void paint_wall(const plan_painter *g)
     const double along_x = tip_x - hub_x, along_y = tip_y - hub_y,
                  length = hypot(along_x, along_y);
     const double nx = along_y / length, ny = -along_x / length;
+
+    // a flat wall: its face, hatched behind
     if (p->wall.kind == WALL_PLANE) {
         const double from_x = hub_x + SLAB_FROM * along_x + off * nx;
         const double from_y = hub_y + SLAB_FROM * along_y + off * ny;
@@ -205,6 +207,7 @@ static void paint_pull(const plan_painter *g, double x, double y)
     cairo_fill(g->cr);
 }
 
+// Paints the plan on its ground, which is there already.
 static void paint_plan_parts(const plan_painter *g)
 {
     const plan *p = g->plan;
@@ -252,6 +255,8 @@ void plan_paint(cairo_t *cr, const plan *p, const plan_view *v)
     const int links = p->parameters->arm.links;
     g_autofree vector *joints = g_new(vector, links + 1);
     g_autofree vector *curve = g_new(vector, scene_curve_length(links));
+
+    // nothing leaves the picture
     cairo_save(cr);
     cairo_rectangle(cr, 0, 0, v->width, v->height);
     cairo_clip(cr);

@@ -68,6 +68,7 @@ static float ramp_at(ramp r, float x, float y)
     return r.start + r.right * x + r.down * y;
 }
 
+// A number as a whole one of 0 to `most`.
 static int bounded(float value, int most)
 {
     if (value <= 0) {
@@ -126,6 +127,7 @@ typedef struct triangle_ramps {
                      // crosses
 } triangle_ramps;
 
+// How shares of the corners, colour and depth change over a triangle.
 static triangle_ramps ramps_of(const flat_triangle *t, const gl_vertex *const v[3])
 {
     triangle_ramps r;
@@ -138,6 +140,7 @@ static triangle_ramps ramps_of(const flat_triangle *t, const gl_vertex *const v[
         }
         r.tint[k] = ramp_of(t, v[0]->colour[k], v[1]->colour[k], v[2]->colour[k]);
     }
+
     r.depth = ramp_of(t, v[0]->place[2] / v[0]->place[3], v[1]->place[2] / v[1]->place[3],
                       v[2]->place[2] / v[2]->place[3]);
     return r;
@@ -150,6 +153,8 @@ static void narrow_columns(const triangle_ramps *r, float y, int *from, int *to)
     for (int k = 0; k < 3; k++) {
         const float right = r->share[k].right, value = ramp_at(r->share[k], 0.5F, y);
         const float crossing = value * r->column[k];
+
+        // the share is positive to one side of where it crosses zero
         if (right > 0) {
             int first = bounded(crossing - 1, *to);
             if (first > *from) {
@@ -244,6 +249,8 @@ static void fill_triangle(sample_buffer *b, const flat_triangle *t,
 void samples_take(sample_buffer *b, const gl_triangles *t)
 {
     memset(b->touched, 0, (size_t)b->tiles_across * (size_t)b->tiles_down);
+
+    // each triangle that is seen from its front
     for (size_t i = 0; i + 2 < t->corner_count; i += 3) {
         flat_triangle flat;
         const gl_vertex *const v[3] = {&t->vertices[t->corners[i]],
@@ -276,6 +283,8 @@ static void add_rows(column_sums *sums, const uint32_t *first, ptrdiff_t across,
         sums->even[i] = first[i] & PAIR;
         sums->odd[i] = first[i] >> 8 & PAIR;
     }
+
+    // the others are added
     for (int row = 1; row < samples; row++) {
         const uint32_t *line = first + row * across;
         for (int i = 0; i < count; i++) {

@@ -33,6 +33,7 @@ static const surroundings dark_surroundings = {
     {0.14, 0.15, 0.165},  {0.94, 0.945, 0.955}, {0.72, 0.74, 0.77},
 };
 
+// Whether there is something to draw, and a picture and a font to draw it with.
 static status check_scene_options(const scene *sc, fault *f)
 {
     const scene_options *o = &sc->options;
@@ -68,6 +69,7 @@ static status create_inset(scene *sc, fault *f)
     return scene_create(&sc->tip, sc->scenario, sc->result, &o, f);
 }
 
+// Makes what all pictures of the scene share.
 static status prepare_scene(scene *sc, fault *f)
 {
     TRY(check_scene_options(sc, f));
@@ -210,6 +212,7 @@ static void draw_texts(scene *sc, cairo_t *cr, const double *times, const colour
     }
 }
 
+// Draws over the picture what is no solid: flashes of impacts, and texts.
 static status draw_labels(scene *sc, const double *times, const colour *inks, int count,
                           cairo_surface_t *onto, fault *f)
 {
@@ -328,6 +331,7 @@ status scene_check_path(const char *path, fault *f)
     return whole_file_check(path, f);
 }
 
+// Whether all instants lie within the run.
 static status check_instants(const scene_picture *p, fault *f)
 {
     const trace *t = &p->result->trace;

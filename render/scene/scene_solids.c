@@ -69,6 +69,7 @@ void scene_build_hub(scene *sc, double angle)
     }
 }
 
+// A pin on a foot at a point, or a slab behind the arm.
 void scene_build_wall(scene *sc, const sample *row)
 {
     const wall_parameters *w = &sc->scenario->parameters.wall;

@@ -30,9 +30,12 @@ static int add_tip_extent(scene *sc, vector *points)
     const trace *t = &sc->result->trace;
     const double near = TIP_AROUND * sc->length, high = PIN_TOP * sc->length;
     const extent_box around = {{near, -near}, {near, -near}, {high, -high}};
+
     const sample last = scene_joints(t, &sc->scenario->parameters,
                                      t->rows[t->row_count - 1].time, sc->joints);
     const vector tip = scene_contact(sc, &last);
+
+    // a box round it
     for (int i = 0; i < 8; i++) {
         const vector corner = box_corner(&around, i);
         points[i] = (vector){tip.x + corner.x, tip.y + corner.y, corner.z};
@@ -67,7 +70,7 @@ static int add_wall_extent(const scene *sc, vector *points)
 }
 
 // Points round everything that is ever to be seen. Returns their number.
-static int find_extent(scene *sc, vector *points)
+static int points_of_extent(scene *sc, vector *points)
 {
     const trace *t = &sc->result->trace;
     const parameters *p = &sc->scenario->parameters;
@@ -95,7 +98,7 @@ static int find_extent(scene *sc, vector *points)
 
 // The direction from which "left" and "right" of the arm count [rad]: towards the wall,
 // or the mean of where the last link points.
-static double heading_of(const scene *sc)
+static double arm_heading(const scene *sc)
 {
     const parameters *p = &sc->scenario->parameters;
     if (p->wall.kind != WALL_NONE) {
@@ -112,14 +115,14 @@ static double heading_of(const scene *sc)
 void scene_set_view(scene *sc)
 {
     vector points[EXTENT_POINTS];
-    int count = find_extent(sc, points);
+    int count = points_of_extent(sc, points);
 
     // text stands below the picture
     camera_window window = {0.05, 0.05, 0.95, 0.88};
     if (sc->options.plain) {
         window.bottom = 0.95;
     }
-    sc->camera = camera_fit(sc->options.camera, heading_of(sc), points, count,
+    sc->camera = camera_fit(sc->options.camera, arm_heading(sc), points, count,
                             sc->options.width, sc->options.height, window);
     if (sc->options.camera.kind == CAMERA_TIP) {
         // the rest of the arm lies before and behind what is looked at

@@ -24,6 +24,8 @@ static status read_table_text(const char *path, char **text, fault *f)
     if (*text == NULL) {
         return input_file_fault(path, &why, f);
     }
+
+    // a text has no zeros in it
     if (strlen(*text) != length) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "'%.300s' is no text, expected a table of numbers (CSV)", path);
@@ -100,18 +102,21 @@ static char *next_field(char **text, bool *last, int *line)
 
 // Takes a row off the text that has as many fields as there are headings; an empty line
 // is none.
-static status take_row(csv_table *t, char **text, int *line, fault *f)
+static status take_table_row(csv_table *t, char **text, int *line, fault *f)
 {
     const int begin = *line;
     char **row = t->fields + t->rows * (size_t)t->columns;
+
     int columns = 0;
     bool last = false;
     while (*text != NULL && !last && columns < t->columns) {
         row[columns++] = next_field(text, &last, line);
     }
+
     if (columns == 1 && row[0][0] == '\0' && last) {
         return STATUS_OK;
     }
+
     if (columns < t->columns || !last) {
         const char *how_many = last ? "fewer" : "more";
         return fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
@@ -138,13 +143,13 @@ static status split_table(csv_table *t, char *text, fault *f)
         t->headings[t->columns++] = next_field(&text, &last, &line);
     }
     while (text != NULL && last) {
-        TRY(take_row(t, &text, &line, f));
+        TRY(take_table_row(t, &text, &line, f));
     }
     return STATUS_OK;
 }
 
 // Room for the fields of the text: one for each comma and each line end.
-static status make_room(csv_table *t, fault *f)
+static status make_table_room(csv_table *t, fault *f)
 {
     size_t commas = 0, line_ends = 0;
     for (const char *c = t->text; *c != '\0'; c++) {
@@ -154,6 +159,7 @@ static status make_room(csv_table *t, fault *f)
             commas++;
         }
     }
+
     t->headings = calloc(MOST_COLUMNS, sizeof *t->headings);
     t->fields = calloc(line_ends + commas + 2, sizeof *t->fields);
     t->lines = calloc(line_ends + 2, sizeof *t->lines);
@@ -170,7 +176,7 @@ static status read_table(csv_table *t, size_t least, fault *f)
         return fault_no_memory(f);
     }
     TRY(read_table_text(t->file, &t->text, f));
-    TRY(make_room(t, f));
+    TRY(make_table_room(t, f));
     TRY(split_table(t, t->text, f));
     if (t->rows >= least) {
         return STATUS_OK;
@@ -231,6 +237,8 @@ int csv_table_find(const csv_table *t, const char *heading)
 {
     const size_t length = name_length(heading);
     int found = -1;
+
+    // the heading itself, or the first of its name in another unit
     for (int c = t->columns - 1; c >= 0; c--) {
         const char *here = t->headings[c];
         if (strcmp(here, heading) == 0) {
@@ -308,7 +316,7 @@ static const char *field_at(const csv_table *t, size_t row, int column)
 }
 
 // The finite number in a field; NaN in one that may be a gap and is. False for all else.
-static bool read_field(const char *field, bool gaps, double *number)
+static bool read_number_field(const char *field, bool gaps, double *number)
 {
     const char *rest;
     if (gaps && (field[0] == '\0' || strcasecmp(field, "nan") == 0)) {
@@ -353,7 +361,7 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
     }
     for (size_t r = 0; r < t->rows; r++) {
         const char *field = field_at(t, r, column);
-        if (!read_field(field, gaps, &numbers[r])) {
+        if (!read_number_field(field, gaps, &numbers[r])) {
             free(numbers);
             return fault_set_place(
                 f, STATUS_BAD_ARGUMENT, t->lines[r], column + 1,
@@ -369,6 +377,7 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
 status csv_table_times(const csv_table *t, const char *heading, double **values, fault *f)
 {
     status code = csv_table_numbers(t, heading, "s", false, values, f);
+
     for (size_t r = 1; code == STATUS_OK && r < t->rows; r++) {
         if ((*values)[r] < (*values)[r - 1]) {
             const int column = csv_table_find(t, heading) + 1;
@@ -389,9 +398,12 @@ double csv_table_at(const double *times, const double *values, size_t rows, doub
 {
     assert(rows > 0);
     size_t low = 0, high = rows; // the first row that is later lies in (low, high]
+
     if (times[0] > time) {
         return values[0];
     }
+
+    // halved until the last row that is not later is found
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
         if (times[middle] <= time) {
@@ -400,6 +412,8 @@ double csv_table_at(const double *times, const double *values, size_t rows, doub
             high = middle;
         }
     }
+
+    // held until the next row, or on the line to it
     if (!linear || high == rows) {
         return values[low];
     }

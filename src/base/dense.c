@@ -16,6 +16,8 @@ static void swap_rows(int length, double *matrix, int i, int j)
     }
 }
 
+// Gaussian elimination with partial pivoting: `right` becomes the solution. False if the
+// matrix is singular.
 static inline bool solve_columns(int n, int columns, double *matrix, double *right)
 {
     // elimination
@@ -73,6 +75,7 @@ bool dense_solve_columns(int n, int columns, double *matrix, double *right)
     return solve_columns(n, columns, matrix, right);
 }
 
+// exp(h A) by scaling and squaring of its Taylor series.
 void matrix_exponential(const double *matrix, int size, double h, double *result,
                         double *power, double *product)
 {
@@ -290,6 +293,7 @@ static void sort_rows(int n, double *values, double *rows)
     }
 }
 
+// Householder's tridiagonal form, then the QL method with implicit shifts.
 bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
 {
     assert(n > 0 && n <= SYMMETRIC_MOST);
@@ -325,6 +329,7 @@ bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
     return true;
 }
 
+// Cholesky's factor L, the matrix being L L', in its lower half.
 bool symmetric_factor(int n, double *matrix)
 {
     for (int i = 0; i < n; i++) {
@@ -352,6 +357,7 @@ bool symmetric_factor(int n, double *matrix)
     return true;
 }
 
+// Solves L x = b, L being symmetric_factor's.
 void symmetric_forward(int n, const double *factor, double *vector)
 {
     for (int i = 0; i < n; i++) {
@@ -364,6 +370,7 @@ void symmetric_forward(int n, const double *factor, double *vector)
     }
 }
 
+// Solves L' x = b.
 void symmetric_backward(int n, const double *factor, double *vector)
 {
     for (int i = n - 1; i >= 0; i--) {
@@ -375,6 +382,7 @@ void symmetric_backward(int n, const double *factor, double *vector)
     }
 }
 
+// A x = lambda M x as an ordinary problem, by the Cholesky factor of M.
 bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values,
                           double *scratch)
 {

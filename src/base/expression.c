@@ -37,6 +37,7 @@ expression_refuse(expression_reader *r, const char *at, const char *format, ...)
     }
 }
 
+// Appends a step to the expression, which is evaluated on a stack.
 static void add_step(expression_reader *r, expression_step step)
 {
     if (r->to->count == EXPRESSION_STEPS) {
@@ -56,6 +57,7 @@ static bool is_next(expression_reader *r, const char *set)
     return *r->at != '\0' && strchr(set, *r->at) != NULL;
 }
 
+// Takes the next character, which must be this one.
 static void expect(expression_reader *r, char c)
 {
     if (is_next(r, (char[]){c, '\0'})) {
@@ -82,6 +84,7 @@ static void read_maximum(expression_reader *r)
     expect(r, ')');
 }
 
+// Says that what comes next is nothing that an expression begins with.
 static void refuse_factor(expression_reader *r)
 {
     static const char expected[] = "expected a name, a number, max or '('";
@@ -130,6 +133,7 @@ static void read_factor(expression_reader *r)
                           MOST_DEPTH);
         return;
     }
+
     if (is_next(r, "+-")) {
         const bool minus = *r->at++ == '-';
         read_factor(r);
@@ -148,6 +152,7 @@ static void read_factor(expression_reader *r)
     r->depth--;
 }
 
+// Factors with * and / between them.
 static void read_product(expression_reader *r)
 {
     read_factor(r);
@@ -162,6 +167,7 @@ static void read_product(expression_reader *r)
     }
 }
 
+// Products with + and - between them.
 static void read_sum(expression_reader *r)
 {
     read_product(r);
@@ -205,6 +211,8 @@ static double combine(int what, double a, double b)
     if (what == EXPRESSION_DIVIDE) {
         return a / b;
     }
+
+    // the larger one, if both are there
     if (isnan(a) || isnan(b)) {
         return (double)NAN;
     }
@@ -217,6 +225,8 @@ double expression_evaluate(const expression *e, expression_value *value,
     assert(e->count > 0);
     double stack[EXPRESSION_STEPS];
     int top = -1;
+
+    // values go onto the stack, operations take theirs off it
     for (int i = 0; i < e->count; i++) {
         const expression_step *s = &e->step[i];
         if (s->what == EXPRESSION_NUMBER) {

@@ -47,6 +47,8 @@ void fourier_transform(double *real, double *imaginary, size_t n)
             const double turn = -PI * (double)k / (double)half;
             double c, s;
             inline_sincos(turn, &s, &c);
+
+            // of two halves one of the double length
             for (size_t i = k; i < n; i += 2 * half) {
                 const size_t j = i + half;
                 const double re = c * real[j] - s * imaginary[j];

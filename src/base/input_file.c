@@ -46,12 +46,14 @@ FILE *input_file_open(const char *path, fault *why)
         fault_set(why, STATUS_CANNOT_READ, "cannot be opened (%s)", strerror(errno));
         return NULL;
     }
+
     struct stat about;
     if (fstat(file, &about) != 0 || S_ISDIR(about.st_mode)) {
         fault_set(why, STATUS_CANNOT_READ, "cannot be read (%s)", strerror(EISDIR));
         close(file);
         return NULL;
     }
+
     FILE *stream = fdopen(file, "r");
     if (stream == NULL) {
         fault_no_memory(why);
@@ -93,6 +95,7 @@ static char *read_bytes(FILE *file, size_t most, size_t *length)
     return bytes;
 }
 
+// Faults say what happened behind the name of the file.
 char *input_file_read(const char *path, size_t most, size_t *length, fault *why)
 {
     assert(most > 0);

@@ -63,7 +63,7 @@ json_t *json_numbers(const double *values, int count)
 }
 
 // The next of the values, of the type that a letter names.
-static json_t *next_value(char type, va_list *list)
+static json_t *next_member_value(char type, va_list *list)
 {
     if (type == 'n') {
         return json_number(va_arg(*list, double));
@@ -90,8 +90,11 @@ json_t *json_members(json_t *object, const char *members, ...)
         const int length = (int)strcspn(members, ":");
         assert(length < (int)sizeof key && members[length] == ':');
         snprintf(key, sizeof key, "%.*s", length, members);
-        json_t *value = next_value(members[length + 1], &list);
+
+        // its value is the next argument
+        json_t *value = next_member_value(members[length + 1], &list);
         json_put(object, key, value);
+
         members += length + 2;
         members += strspn(members, " ");
     }
@@ -112,6 +115,7 @@ static void write_indent(FILE *stream, int depth)
     fprintf(stream, "\n%*s", 2 * depth, "");
 }
 
+// An object, a member on each line.
 static void write_object(FILE *stream, const json_t *object, int depth)
 {
     const char *key, *separator = "";
@@ -166,6 +170,7 @@ static void write_array(FILE *stream, const json_t *array, int depth)
     fputc(']', stream);
 }
 
+// A value, its parts indented by its depth within others.
 static void write_indented(FILE *stream, const json_t *value, int depth)
 {
     char text[NUMBER_TEXT];

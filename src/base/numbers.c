@@ -173,6 +173,7 @@ typedef struct decimal {
     int exponent;
 } decimal;
 
+// The same number with digits that do not end in a zero.
 static decimal without_zeros(decimal d)
 {
     while (d.digits % 100 == 0) {
@@ -294,6 +295,7 @@ static char *write_positional(char *text, const char *digits, int count, int pla
     return text;
 }
 
+// Digits d1 d2 ... dn as d1.d2...e+place. Returns the end.
 static char *write_with_exponent(char *text, const char *digits, int count, int place)
 {
     const unsigned size = (unsigned)abs(place);
@@ -318,6 +320,7 @@ static void write_digits(char *text, double value, int most_plain)
         strcpy(text, value > 0 ? "inf" : "-inf");
         return;
     }
+
     if (signbit(value)) {
         *text++ = '-';
     }
@@ -330,6 +333,7 @@ static void write_digits(char *text, double value, int most_plain)
     const decimal d = shortest_decimal(fabs(value));
     const int count = write_whole(digits, d.digits), place = count - 1 + d.exponent;
     const int longest = count > most_plain ? count : most_plain;
+
     char *end;
     if (place >= -4 && place < longest) {
         end = write_positional(text, digits, count, place);

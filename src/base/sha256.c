@@ -73,10 +73,12 @@ void sha256_add(sha256 *h, const void *bytes, size_t size)
         // as much as the open block has room for
         const size_t used = h->length % BLOCK, room = BLOCK - used;
         const size_t count = size < room ? size : room;
+
         memcpy(h->block + used, from, count);
         h->length += count;
         from += count;
         size -= count;
+
         if (count == room) {
             take_block(h->state, h->block);
         }

@@ -55,6 +55,7 @@ static bool append_chunk(shared_array *a, const shared_array *from)
     if (a->mapped + ARRAY_CHUNK > a->reserved) {
         return false;
     }
+
     char *at = (char *)a->base + a->mapped;
     bool mapped;
     if (from == NULL) {
@@ -65,6 +66,7 @@ static bool append_chunk(shared_array *a, const shared_array *from)
     if (!mapped) {
         return false;
     }
+
     a->mapped += ARRAY_CHUNK;
     a->capacity = a->mapped / a->size;
     return true;
@@ -106,6 +108,7 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
     return false;
 }
 
+// Room for `count` elements in an array that shares nothing, by doubling.
 static bool grow_plain(shared_array *a, size_t count)
 {
     size_t capacity = 2 * a->capacity;
@@ -115,6 +118,7 @@ static bool grow_plain(shared_array *a, size_t count)
     if (capacity < count) {
         capacity = count;
     }
+
     void *base = realloc(a->base, capacity * a->size + 1);
     if (base == NULL) {
         return false;

@@ -30,6 +30,8 @@ static bool own_file(char *path)
         strstr(about.dli_fname, ".so") != NULL) {
         return realpath(about.dli_fname, path) != NULL;
     }
+
+    // the program, which the kernel knows
     ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
     if (length <= 0) {
         path[0] = '\0';

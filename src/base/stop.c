@@ -21,11 +21,13 @@ bool stop_ask(stop_request *s)
     if (s->asked == 0) {
         s->asked = now;
     }
+
     const double looks = s->looks, took = now - s->asked;
     if (took < INTERVAL / 2) {
         s->due = (int)fmin(2 * looks, MOST_DUE);
         return false;
     }
+
     s->due = (int)fmin(fmax(looks * INTERVAL / took, 1), MOST_DUE);
     s->looks = 0;
     s->asked = now;

@@ -13,6 +13,7 @@ static bool reserve_bytes(text_stream *t, size_t count)
     if (t->length + count < t->capacity) {
         return true;
     }
+
     const size_t wanted = 2 * (t->length + count) + LEAST;
     char *grown = realloc(t->text, wanted);
     if (grown != NULL) {
@@ -46,10 +47,12 @@ char *text_stream_close(text_stream *t, size_t *length)
     bool whole = ferror(t->stream) == 0;
     whole = fclose(t->stream) == 0 && whole;
     whole = !loss_noted() && whole && reserve_bytes(t, 0);
+
     if (!whole) {
         free(t->text);
         return NULL;
     }
+
     t->text[t->length] = '\0';
     if (length != NULL) {
         *length = t->length;

@@ -265,6 +265,7 @@ static int end_stream(whole_file *w)
 {
     const bool lost = loss_noted(); // before it came here
     int reason;
+
     if (w->stream == stdout) {
         reason = stream_failure(stdout);
         if (reason == EPIPE) {
@@ -277,6 +278,7 @@ static int end_stream(whole_file *w)
             reason = ENOMEM;
         }
     }
+
     if (lost && reason == 0) {
         reason = ENOMEM;
     }
@@ -291,6 +293,7 @@ static int place_temporary(whole_file *w, bool whole)
     if (w->temporary[0] == '\0') {
         return 0;
     }
+
     if (whole && rename(w->temporary, w->path) != 0) {
         reason = errno;
     }

@@ -217,6 +217,7 @@ void make_printable(char *text, char kept)
         if (*text != kept) {
             length = printable_length(text);
         }
+
         if (length == 0) {
             *text = '?';
             length = 1;

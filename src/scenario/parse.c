@@ -7,7 +7,7 @@
 #include "src/tables/signals.h"
 
 // Whether a control character of UTF-8 begins there.
-static bool is_control(const char *at)
+static bool begins_control(const char *at)
 {
     const unsigned char c = (unsigned char)at[0];
     return c < 0x20 || c == 0x7f || (c == 0xc2 && (unsigned char)at[1] < 0xa0);
@@ -27,7 +27,7 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what,
     // control characters are not allowed
     for (size_t i = 0; i < length; i++) {
         const char c = node->text[i];
-        if (is_control(node->text + i) && !(many_lines && (c == '\n' || c == '\t'))) {
+        if (begins_control(node->text + i) && !(many_lines && (c == '\n' || c == '\t'))) {
             report_node(r, node, "%s holds %s, expected %s", what,
                         c == '\n' ? "several lines" : "a control character",
                         many_lines ? "text" : "one line of text");
@@ -195,7 +195,7 @@ static void complete(reader *r, const char *name)
     // the name stands in for a title, if it can
     bool can = strlen(called) <= SCENARIO_TITLE;
     for (const char *c = called; *c != '\0'; c++) {
-        can = can && !is_control(c);
+        can = can && !begins_control(c);
     }
     if (s->title == NULL) {
         s->title = strdup(can ? called : "untitled");

@@ -58,6 +58,7 @@ static void say_no_touch(account *a, const char *drive)
     for (size_t r = 0; r < t->row_count; r++) {
         nearest = fmin(nearest, t->rows[r].gap);
     }
+
     if (isfinite(nearest)) {
         add_sentence(a,
                      "Driven by %s the arm does not touch the wall in %.4g s: %.3g mm "
@@ -88,6 +89,7 @@ static bool say_approach(account *a)
         add_sentence(a, "Driven by %s the arm starts on the wall.", drive);
         return true;
     }
+
     if (isnan(before->kinetic_energy) || isnan(before->gap_velocity)) {
         add_sentence(a, "Driven by %s the arm touches the wall at %.4g s.", drive, touch);
         return true;
@@ -107,10 +109,13 @@ static void say_blow(account *a)
     while (i < t->event_count && t->events[i].kind != EVENT_IMPACT) {
         i++;
     }
+
     if (i == t->event_count) {
         return;
     }
     const event *impact = &t->events[i];
+
+    // what was there before it, and after it
     add_sentence(a,
                  "At %.4g s an impulse of %.3g N s stops what has to stop at once: of "
                  "%.3g J of motion %.3g J are left, whatever comes.",
@@ -147,10 +152,12 @@ static void say_pulse(account *a, double touch, double end)
     if (isnan(m->first_pulse_peak_N) || isnan(m->first_pulse_time_to_peak_s)) {
         return;
     }
+
     const double peak = touch + m->first_pulse_time_to_peak_s;
     const sample *at_peak = &t->rows[trace_row_at(t, peak)];
     char turn[96];
     write_turn(t, touch, end, turn, sizeof turn);
+
     add_sentence(a,
                  "The rest bends the arm against the wall: the force is largest at "
                  "%.4g s, %.4g N, when the springs hold %.3g J; %s.",
@@ -185,9 +192,12 @@ static void list_shares(const sample *from, const sample *to, double sign, char 
     const double least = 1e-3 * (fabs(from->kinetic_energy - to->kinetic_energy) +
                                  fabs(from->strain_energy - to->strain_energy));
     const int count = sizeof energy_shares / sizeof *energy_shares;
+
+    // the list, which begins as that of nobody
     size_t used = 0;
     snprintf(text, size, "nothing");
     const char *comma = "";
+
     for (int i = 0; i < count && used < size; i++) {
         const int signal = energy_shares[i].signal;
         const double fall = signal_value(from, signal) - signal_value(to, signal);
@@ -243,12 +253,14 @@ static void say_end(account *a)
     const summary *m = &a->run->summary;
     const sample *last = &t->rows[t->row_count - 1];
     const bool sticks = last->sticking != 0;
+
     if (a->scenario->parameters.control.law != LAW_NONE) {
         char peak[64] = "";
         if (!isnan(m->force_over_command_N)) {
             snprintf(peak, sizeof peak, "; its peak is %.3g N above that",
                      m->force_over_command_N);
         }
+
         const char *rest = sticks ? ", where the hub sticks" : "";
         add_sentence(a, "The law wants %.3g N and gets %.4g at the end%s%s.",
                      m->force_command_N, m->steady_force_N, rest, peak);

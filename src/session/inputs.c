@@ -101,6 +101,7 @@ static status set_given(parameters *p, int parameter, given_value v, fault *f)
     return parameter_set_number(p, parameter, v.number, f);
 }
 
+// Gives a parameter a value from the cursor on, or from the start; see session_change.
 static status change(session *s, int parameter, given_value v, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
@@ -191,6 +192,7 @@ static bool continues_last(const session *s, int parameter, given_value v)
            (name == 0 || strncmp(last->text, v.text, name) == 0) && last->time == s->now;
 }
 
+// The same in the place of the last input, if this goes on with it; see session_adjust.
 static status adjust(session *s, int parameter, given_value v, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
@@ -360,6 +362,7 @@ status session_take_inputs(session *s, const session_input *inputs, int count, f
     if (taken == NULL) {
         return fault_no_memory(f);
     }
+
     if (count > 0) {
         memcpy(taken, inputs, (size_t)count * sizeof *taken);
     }
@@ -369,6 +372,7 @@ status session_take_inputs(session *s, const session_input *inputs, int count, f
     const int old_count = s->input_count, old_total = s->input_total;
     s->inputs = taken;
     s->input_count = s->input_total = count;
+
     const status code = session_compute(s, f);
     if (code != STATUS_OK) {
         s->inputs = old;

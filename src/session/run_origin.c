@@ -9,11 +9,13 @@
 status run_origin_take(run_origin *o, const session *s, fault *f)
 {
     *o = (run_origin){.input_count = s->input_count, .now = s->now, .seen = s->seen};
+
     o->inputs = calloc((size_t)s->input_count + 1, sizeof *o->inputs);
     if (o->inputs == NULL || scenario_copy(&o->base, &s->base) != STATUS_OK) {
         free(o->inputs);
         return fault_no_memory(f);
     }
+
     memcpy(o->outside, s->digest, sizeof o->outside);
     if (s->input_count > 0) {
         memcpy(o->inputs, s->inputs, (size_t)s->input_count * sizeof *o->inputs);
@@ -31,12 +33,16 @@ void run_origin_finish(run_origin *o)
 bool same_base(const scenario *a, const scenario *b)
 {
     bool same = strcmp(a->name, b->name) == 0 && a->action_count == b->action_count;
+
+    // every parameter, as it is written
     for (int i = 0; same && i < parameter_count; i++) {
         char one[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
         parameter_format(&a->parameters, i, one, sizeof one);
         parameter_format(&b->parameters, i, other, sizeof other);
         same = strcmp(one, other) == 0;
     }
+
+    // and every action of the script
     for (int i = 0; same && i < a->action_count; i++) {
         const action *one = &a->actions[i], *other = &b->actions[i];
         same = one->time == other->time && one->kind == other->kind &&

@@ -68,6 +68,7 @@ bool session_step(session *s, long rows)
     } else if (to > last) {
         to = last;
     }
+
     bool moved = to != (long)s->row;
     s->row = (size_t)to;
     s->now = session_sample(s)->time;
@@ -142,6 +143,7 @@ static double expected_rows(const parameters *p)
     return p->run.duration / p->method.step * ROW_SPARE;
 }
 
+// Refuses a run whose rows would not fit into the budget.
 static status check_memory(const parameters *p, fault *f)
 {
     const double rows = expected_rows(p);
@@ -209,10 +211,12 @@ static background_run *wait_for_run(const session *s, background_run *c, run_res
     while (!over && background_run_look(c, run) == 0) {
         over = background_run_wait(c, SHORT_WAIT);
     }
+
     if (over) {
         *run = background_run_finish(c);
         return NULL;
     }
+
     summary_init(&run->summary);
     run->history = (run_history){0};
     return c;

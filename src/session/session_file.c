@@ -48,6 +48,7 @@ static void write_number(FILE *stream, const char *before, double value)
     fprintf(stream, "%s%s", before, text);
 }
 
+// A change as a line: its word, its instant, and what it changes.
 static void write_input(FILE *stream, const session_input *in)
 {
     static const char *const words[] = {[SESSION_INPUT_START] = "start: ",
@@ -81,9 +82,11 @@ static void write_run(FILE *stream, const kept_run *r)
     for (int i = 0; i < r->from.input_count; i++) {
         write_input(stream, &r->from.inputs[i]);
     }
+
     write_number(stream, "cursor: ", r->from.now);
     write_number(stream, " ", r->from.seen);
     fputc('\n', stream);
+
     if (r->hidden) {
         fputs("hidden:\n", stream);
     }
@@ -146,23 +149,27 @@ static status end_base(session_reader *r)
         }
         return refuse_line(r, "a run, expected a scenario before it");
     }
+
     fault first = {0};
     scenario fresh;
     const status code = scenario_parse(&fresh, r->text, r->length, r->path, r->name,
                                        keep_first_fault, &first);
     free(r->text);
     r->text = NULL;
+
     if (code != STATUS_OK && first.text[0] == '\0') {
         return refuse_line(r, status_text(code));
     }
     if (code != STATUS_OK) {
         return refuse_line(r, first.text);
     }
+
     scenario_finish(&r->base);
     r->base = fresh;
     return STATUS_OK;
 }
 
+// Begins a run of the scenario that was read last.
 static status begin_section(session_reader *r, const char *name)
 {
     session_file *file = r->file;
@@ -170,11 +177,13 @@ static status begin_section(session_reader *r, const char *name)
     if (file->run_count == SESSION_FILE_RUNS) {
         return refuse_line(r, "one run more than a session holds");
     }
+
     kept_run *k = &file->runs[file->run_count];
     *k = (kept_run){0};
     if (scenario_copy(&k->from.base, &r->base) != STATUS_OK) {
         return fault_no_memory(r->fault);
     }
+
     snprintf(k->name, sizeof k->name, "%s", name);
     file->run_count++;
     return STATUS_OK;
@@ -241,6 +250,7 @@ static status read_input(const session_reader *r, const run_origin *from,
         }
         return STATUS_OK;
     }
+
     if (!decimal_read(text, &in->time, &rest) || !(in->time >= 0) ||
         !isfinite(in->time)) {
         return refuse_line(r, "no change, expected an instant, a parameter and a value");
@@ -248,16 +258,19 @@ static status read_input(const session_reader *r, const run_origin *from,
     return read_parameter_change(r, from, in, rest);
 }
 
+// Appends a change to the present run.
 static status append_input(session_reader *r, session_input_kind kind, const char *text)
 {
     kept_run *run = last_run(r);
     if (run == NULL) {
         return refuse_line(r, "a change, expected a run before it");
     }
+
     run_origin *from = &run->from;
     if (from->input_count == MOST_INPUTS) {
         return refuse_line(r, "too many changes");
     }
+
     session_input in = {.kind = kind, .parameter = -1, .before = (double)NAN};
     TRY(read_input(r, from, &in, text));
     in.seen_at = in.time;
@@ -279,6 +292,7 @@ static status append_line(session_reader *r, const char *line)
     if (r->text == NULL) {
         return refuse_line(r, "text without a scenario");
     }
+
     char *longer = realloc(r->text, r->length + more + 2);
     if (longer == NULL) {
         return fault_no_memory(r->fault);
@@ -290,6 +304,7 @@ static status append_line(session_reader *r, const char *line)
 
 // --- the kinds of lines, each read from what stands behind its word
 
+// "scenario: NAME", whose text follows.
 static status take_scenario(session_reader *r, const char *rest)
 {
     free(r->text);
@@ -302,6 +317,7 @@ static status take_scenario(session_reader *r, const char *rest)
     return STATUS_OK;
 }
 
+// "present:", the first run.
 static status take_present(session_reader *r, const char *rest)
 {
     if (r->file->run_count != 0) {
@@ -310,6 +326,7 @@ static status take_present(session_reader *r, const char *rest)
     return begin_section(r, rest);
 }
 
+// "pinned: NAME", each further run.
 static status take_pinned(session_reader *r, const char *rest)
 {
     if (r->file->run_count == 0) {
@@ -318,21 +335,25 @@ static status take_pinned(session_reader *r, const char *rest)
     return begin_section(r, rest);
 }
 
+// "start: INSTANT PARAMETER VALUE"
 static status take_start(session_reader *r, const char *rest)
 {
     return append_input(r, SESSION_INPUT_START, rest);
 }
 
+// "from: INSTANT PARAMETER VALUE"
 static status take_timed(session_reader *r, const char *rest)
 {
     return append_input(r, SESSION_INPUT_TIMED, rest);
 }
 
+// "push: INSTANT IMPULSE"
 static status take_push(session_reader *r, const char *rest)
 {
     return append_input(r, SESSION_INPUT_PUSH, rest);
 }
 
+// "cursor: INSTANT SEEN"
 static status take_cursor(session_reader *r, const char *rest)
 {
     run_origin *from = &last_run(r)->from;
@@ -343,6 +364,7 @@ static status take_cursor(session_reader *r, const char *rest)
     return STATUS_OK;
 }
 
+// "hidden:"
 static status take_hidden(session_reader *r, const char *rest)
 {
     (void)rest;
@@ -350,6 +372,7 @@ static status take_hidden(session_reader *r, const char *rest)
     return STATUS_OK;
 }
 
+// "outside: DIGEST"
 static status take_outside(session_reader *r, const char *rest)
 {
     run_origin *from = &last_run(r)->from;
@@ -357,6 +380,7 @@ static status take_outside(session_reader *r, const char *rest)
     return STATUS_OK;
 }
 
+// "baseline: NUMBER" of a pinned run, from 1; 0 for none.
 static status take_baseline(session_reader *r, const char *rest)
 {
     session_file *file = r->file;
@@ -367,6 +391,7 @@ static status take_baseline(session_reader *r, const char *rest)
     return STATUS_OK;
 }
 
+// "view: LINE", which belongs to who shows the session.
 static status take_view(session_reader *r, const char *rest)
 {
     session_file *file = r->file;
@@ -394,11 +419,14 @@ static const struct {
     {"view", false, take_view},
 };
 
+// Takes a line of any kind.
 static status take_line(session_reader *r, char *line)
 {
     if (strncmp(line, "| ", 2) == 0) {
         return append_line(r, line + 2);
     }
+
+    // the word and the rest
     char *rest = strchr(line, ':');
     if (rest == NULL) {
         return refuse_line(r, "no line of a session, expected 'word: rest'");
@@ -425,18 +453,21 @@ static status read_session_line(session_reader *r, char *line, size_t bytes)
     if (bytes > MOST_BYTES) {
         return refuse_line(r, "the file is too long");
     }
+
     if (r->line == 1) {
         if (strcmp(line, head) != 0) {
             return refuse_line(r, "this is no session");
         }
         return STATUS_OK;
     }
+
     if (line[0] == '\0') {
         return STATUS_OK;
     }
     return take_line(r, line);
 }
 
+// Reads a whole session, line by line.
 static status read_session_lines(session_reader *r, FILE *stream)
 {
     char *line = NULL;
@@ -469,12 +500,16 @@ status session_file_read(session_file *file, const char *path, fault *f)
     if (stream == NULL) {
         return input_file_fault(path, &why, f);
     }
+
+    // faults name the line
     fault own = {0};
     session_reader r = {.file = file, .path = path, .fault = &own};
     const status code = read_session_lines(&r, stream);
+
     fclose(stream);
     free(r.text);
     scenario_finish(&r.base);
+
     if (code != STATUS_OK) {
         session_file_finish(file);
         return fault_set(f, own.code, "%s", own.text);
