@@ -10,8 +10,8 @@
 
 // Gives a parameter a number in small steps: several at one instant are one change, and
 // none at all once the value is what it was.
-static bool act_adjust(explorer_model *model, explorer_input *input, int parameter,
-                       double value)
+static bool adjust_number(explorer_model *model, explorer_input *input, int parameter,
+                          double value)
 {
     assert(parameter >= 0 && parameter < parameter_count);
     session *s = &model->session;
@@ -46,6 +46,19 @@ static bool find_parameter(explorer_input *input, const char *name, int *paramet
     return true;
 }
 
+// Says what a parameter is, and why it has no effect if it has none.
+static bool tell_parameter(const explorer_model *model, explorer_input *input,
+                           int parameter)
+{
+    const parameter_info *info = &parameter_table[parameter];
+    const char *inert = model_inert_reason(model, parameter);
+    if (inert != NULL) {
+        return act_tell(input, "%s: %s; without effect, %s", info->path,
+                        info->description, inert);
+    }
+    return act_tell(input, "%s: %s", info->path, info->description);
+}
+
 bool act_set(explorer_model *model, explorer_view *view, explorer_input *input,
              const char *argument)
 {
@@ -63,13 +76,7 @@ bool act_set(explorer_model *model, explorer_view *view, explorer_input *input,
     // without a value it is only selected
     parameter_list_select(&view->parameters, (parameter_line){parameter, false});
     if (value[0] == '\0') {
-        const parameter_info *info = &parameter_table[parameter];
-        const char *inert = model_inert_reason(model, parameter);
-        if (inert != NULL) {
-            return act_tell(input, "%s: %s; without effect, %s", info->path,
-                            info->description, inert);
-        }
-        return act_tell(input, "%s: %s", info->path, info->description);
+        return tell_parameter(model, input, parameter);
     }
     return act_change_parameter(model, input, parameter, value);
 }
@@ -99,6 +106,14 @@ static double nudge_step(int parameter, double value)
     return pow(10, floor(log10((scale.high - scale.low) / LEAST_STEPS) + 1e-9));
 }
 
+// A value with six significant digits.
+static double round_to_six_digits(double value)
+{
+    char text[NUMBER_TEXT];
+    snprintf(text, sizeof text, "%.6g", value);
+    return strtod(text, NULL);
+}
+
 // A real parameter's value one nudge up or down; what goes down comes up to where it was.
 static double nudged(int parameter, double value, int direction)
 {
@@ -106,96 +121,88 @@ static double nudged(int parameter, double value, int direction)
     if (direction < 0) {
         above = value * (1 - 1e-6);
     }
-    const double step = nudge_step(parameter, above);
-    char text[NUMBER_TEXT];
-    snprintf(text, sizeof text, "%.6g", value + direction * step);
-    return strtod(text, NULL);
+    return round_to_six_digits(value + direction * nudge_step(parameter, above));
 }
 
-// The next or the previous value of the selected parameter: a step more or less, another
-// choice.
+// Moves to the next run of a row of a map; its ends have no neighbours.
+static void nudge_map(explorer_model *model, int direction)
+{
+    const int across = (int)model->sweep.axis.count;
+    const int to = model->sweep.selected % across + direction;
+    if (to >= 0 && to < across) {
+        act_select_swept(model, direction);
+    }
+}
+
 bool act_nudge(explorer_model *model, const explorer_view *view, explorer_input *input,
                const char *argument)
 {
-    int direction = argument[0] == '-' ? -1 : 1, index = view->parameters.parameter;
+    const int direction = argument[0] == '-' ? -1 : 1;
     if (view->side.panel == PANEL_SWEEP && lab_sweep_is_map(&model->sweep)) {
-        const int across = (int)model->sweep.axis.count,
-                  to = model->sweep.selected % across + direction;
-        if (to >= 0 && to < across) {
-            act_select_swept(model, direction);
-        }
+        nudge_map(model, direction);
         return true;
     }
-    const parameter_info *info = &parameter_table[index];
     if (view->parameters.on_heading) {
         return act_refuse(input,
                           "no parameter is selected (arrows up and down select one)");
     }
-    parameters p = model_parameters(model);
-    double value = parameter_get(&p, index);
-    if (strcmp(info->path, "control.lock") == 0) {
+
+    // what is no number: a lock goes round its modes
+    const int index = view->parameters.parameter;
+    const parameter_info *info = &parameter_table[index];
+    if (index == PARAMETER_INDEX(control.lock)) {
         return act_lock(model, input, direction > 0 ? "next" : "previous");
     }
     if (parameter_is_text(info)) {
-        return act_refuse(input, "%s is a %s: Enter edits it", info->path,
-                          info->type == PARAMETER_LIST ? "list" : "text");
+        const char *kind = info->type == PARAMETER_LIST ? "list" : "text";
+        return act_refuse(input, "%s is a %s: Enter edits it", info->path, kind);
     }
 
-    // a number by a step, anything else to its neighbour
+    // a real number by a step, anything else to its neighbour
+    const parameters p = model_parameters(model);
+    double value = parameter_get(&p, index);
     if (info->type == PARAMETER_REAL) {
         value = nudged(index, value, direction);
     } else {
         value = value + direction;
     }
-    return act_adjust(model, input, index,
-                      fmax(info->minimum, fmin(info->maximum, value)));
+    return adjust_number(model, input, index,
+                         fmax(info->minimum, fmin(info->maximum, value)));
 }
 
-// Makes the run of the selected value the present run, by a change from the start.
+// Makes the run of the selected value the present run, by changes from the start.
 static bool take_swept(explorer_model *model, explorer_input *input)
 {
     const lab_sweep *sweep = &model->sweep;
-    session *s = &model->session;
-    double values[2];
     if (sweep->selected >= sweep->count) {
         return act_refuse(input, "the sweep has no run yet");
     }
-
-    // a change from the start, whatever is looked at
-    const double now = s->now;
-    const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
-    bool changed = true;
+    double values[2];
     lab_sweep_values(sweep, sweep->selected, values);
-    for (int i = 0; i <= lab_sweep_is_map(sweep) && changed; i++) {
+
+    // at the start, where a change is one from the start
+    session *s = &model->session;
+    const double now = s->now;
+    session_seek(s, 0);
+    bool changed = act_change_number(model, input, sweep->axis.parameter, values[0]);
+    if (changed && lab_sweep_is_map(sweep)) {
         session_seek(s, 0);
-        changed = act_change_number(model, input, axes[i]->parameter, values[i]);
+        changed = act_change_number(model, input, sweep->second.parameter, values[1]);
     }
+
+    // and back to the instant that is looked at
     const double seen = s->seen;
     session_seek(s, now);
     s->seen = fmax(seen, s->now);
     return changed;
 }
 
-bool act_edit(explorer_model *model, explorer_view *view, explorer_input *input,
-              const char *argument)
+// Opens the prompt with a parameter's present value, and says what can be typed.
+static bool ask_value(const explorer_model *model, explorer_input *input, int index)
 {
-    // a parameter by name is selected first
-    int index = view->parameters.parameter;
-    if (argument[0] != '\0') {
-        if (!find_parameter(input, argument, &index)) {
-            return false;
-        }
-        parameter_list_select(&view->parameters, (parameter_line){index, false});
-    } else if (view->side.panel == PANEL_SWEEP) {
-        return take_swept(model, input);
-    }
-    if (view->parameters.on_heading) {
-        parameter_list_fold(&view->parameters, index);
-        return true;
-    }
-    char value[LINE_TEXT];
-    const parameters p = model_parameters(model);
     const parameter_info *info = &parameter_table[index];
+    const parameters p = model_parameters(model);
+    char value[LINE_TEXT];
     parameter_format(&p, index, value, sizeof value);
     if (info->type == PARAMETER_REAL && value[0] != '\0') {
         snprintf(value, sizeof value, "%.15g", parameter_get(&p, index));
@@ -217,53 +224,76 @@ bool act_edit(explorer_model *model, explorer_view *view, explorer_input *input,
     return act_tell(input, "%s", about);
 }
 
-bool act_push(explorer_model *model, explorer_input *input, const char *argument)
+bool act_edit(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
-    session_forget_ghost(&model->session);
-    double impulse = 0.01;
-    return act_read_number_or(input, argument, "", &impulse) &&
-           act_succeeded(input, session_push(&model->session, impulse, &input->fault)) &&
-           (act_tell_failed_run(model, input) ||
-            act_tell(input, "pushed with %g N s at %.4f s", impulse, model->session.now));
+    // a parameter by name is selected first
+    int index = view->parameters.parameter;
+    if (argument[0] != '\0') {
+        if (!find_parameter(input, argument, &index)) {
+            return false;
+        }
+        parameter_list_select(&view->parameters, (parameter_line){index, false});
+    } else if (view->side.panel == PANEL_SWEEP) {
+        return take_swept(model, input);
+    }
+    if (view->parameters.on_heading) {
+        parameter_list_fold(&view->parameters, index);
+        return true;
+    }
+    return ask_value(model, input, index);
 }
 
-// Takes the last change back (direction -1) or puts it in again (1), and so with the
-// opening of a scenario, which is before the first change and after the last.
-static bool turn(explorer_model *model, explorer_view *view, explorer_input *input,
-                 int direction)
+bool act_push(explorer_model *model, explorer_input *input, const char *argument)
 {
     session *s = &model->session;
     session_forget_ghost(s);
-    const bool back = direction < 0;
-    const int last = back ? 0 : s->input_total;
-    if (s->input_count == last && model_has_visit(model, direction)) {
-        if (!act_succeeded(input,
-                           state_change_visit(model, view, direction, &input->fault))) {
-            return false;
-        }
-        if (back) {
-            return act_tell(input, "in %s again, U opens the one you left", s->base.name);
-        }
-        return act_tell(input, "in %s again, u goes back", s->base.name);
+    double impulse = 0.01;
+    if (!act_read_number_or(input, argument, "", &impulse) ||
+        !act_succeeded(input, session_push(s, impulse, &input->fault))) {
+        return false;
     }
-
-    // a change
-    if (back) {
-        return act_succeeded(input, session_undo(s, &input->fault)) &&
-               act_tell(input, "undone, U puts it in again");
-    }
-    return act_succeeded(input, session_redo(s, &input->fault)) &&
-           act_tell(input, "put in again");
+    return act_tell_failed_run(model, input) ||
+           act_tell(input, "pushed with %g N s at %.4f s", impulse, s->now);
 }
 
+// Returns to the scenario that was opened before the present one (direction -1), or goes
+// on to the one that this left (1).
+static bool change_scenario(explorer_model *model, explorer_view *view,
+                            explorer_input *input, int direction)
+{
+    if (!act_succeeded(input,
+                       state_change_visit(model, view, direction, &input->fault))) {
+        return false;
+    }
+    const char *name = model->session.base.name;
+    if (direction < 0) {
+        return act_tell(input, "in %s again, U opens the one you left", name);
+    }
+    return act_tell(input, "in %s again, u goes back", name);
+}
+
+// The opening of a scenario is undone as a change is, before the first one.
 bool act_undo(explorer_model *model, explorer_view *view, explorer_input *input)
 {
-    return turn(model, view, input, -1);
+    session *s = &model->session;
+    session_forget_ghost(s);
+    if (s->input_count == 0 && model_has_visit(model, -1)) {
+        return change_scenario(model, view, input, -1);
+    }
+    return act_succeeded(input, session_undo(s, &input->fault)) &&
+           act_tell(input, "undone, U puts it in again");
 }
 
 bool act_redo(explorer_model *model, explorer_view *view, explorer_input *input)
 {
-    return turn(model, view, input, 1);
+    session *s = &model->session;
+    session_forget_ghost(s);
+    if (s->input_count == s->input_total && model_has_visit(model, 1)) {
+        return change_scenario(model, view, input, 1);
+    }
+    return act_succeeded(input, session_redo(s, &input->fault)) &&
+           act_tell(input, "put in again");
 }
 
 bool act_model(explorer_model *model, explorer_input *input)
@@ -319,8 +349,10 @@ bool act_apply_slider(explorer_model *model, const explorer_view *view,
 {
     const slider_grip *grip = &view->slider;
     const parameters p = model_parameters(model);
-    return !grip->held || parameter_get(&p, grip->parameter) == grip->value ||
-           act_adjust(model, input, grip->parameter, grip->value);
+    if (!grip->held || parameter_get(&p, grip->parameter) == grip->value) {
+        return true;
+    }
+    return adjust_number(model, input, grip->parameter, grip->value);
 }
 
 bool act_release_slider(explorer_model *model, explorer_view *view, explorer_input *input)
