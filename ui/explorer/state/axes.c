@@ -2,6 +2,7 @@
 #include "ui/explorer/state/state.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -22,12 +23,9 @@ void view_window(const explorer_model *model, const explorer_view *view, double 
     const time_window *w = &view->window;
     if (shows_all(w)) {
         *from = 0;
-    } else {
-        *from = w->from;
-    }
-    if (shows_all(w)) {
         *to = model->session.effective.parameters.run.duration;
     } else {
+        *from = w->from;
         *to = w->to;
     }
 }
@@ -77,7 +75,7 @@ static void follow_cursor(const explorer_model *model, explorer_view *view)
 void extremes_forget(extremes *e)
 {
     for (size_t i = 0; i < sizeof e->pairs / sizeof e->pairs[0]; i++) {
-        free(e->pairs[i]);
+        g_free(e->pairs[i]);
     }
     *e = (extremes){0};
 }
@@ -85,35 +83,35 @@ void extremes_forget(extremes *e)
 const double *extremes_pairs(const extremes *e, const shown_run *run, int signal)
 {
     assert(signal >= 0 && signal < EXTREMES_SIGNALS);
-    const bool covers = e->run == run->id && e->rows[signal] == run->trace->row_count;
-    if (covers) {
-        return e->pairs[signal];
+    if (e->run != run->id || e->rows[signal] != run->trace->row_count) {
+        return NULL;
     }
-    return NULL;
+    return e->pairs[signal];
 }
 
-// What a signal does in the rows from `first` to `last`, whole blocks at once where they
-// are known.
+// The range of a signal in the rows from `first` to `last`, taken from whole blocks where
+// they are known and lie within.
 static value_range range_of_rows(const trace *t, int signal, const double *pairs,
                                  size_t first, size_t last)
 {
     value_range found = value_range_empty;
-
-    // a whole block where it lies in the range, else one row
-    for (size_t r = first; r <= last && r < t->row_count;) {
-        if (pairs != NULL && r % EXTREMES_BLOCK == 0 && r + EXTREMES_BLOCK <= last + 1) {
-            const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
+    size_t row = first;
+    while (row <= last && row < t->row_count) {
+        if (pairs != NULL && row % EXTREMES_BLOCK == 0 &&
+            row + EXTREMES_BLOCK <= last + 1) {
+            const double *pair = pairs + 2 * (row / EXTREMES_BLOCK);
             value_range_widen(&found, (value_range){pair[0], pair[1]});
-            r += EXTREMES_BLOCK;
+            row += EXTREMES_BLOCK;
         } else {
-            value_range_add(&found, signal_value(&t->rows[r++], signal));
+            value_range_add(&found, signal_value(&t->rows[row], signal));
+            row++;
         }
     }
     return found;
 }
 
 // Extends the blocks of a signal to all rows of a run, including those that it has
-// gained. Without memory the signal has no blocks.
+// gained.
 static void update_extremes(extremes *e, const shown_run *run, int signal)
 {
     const trace *t = run->trace;
@@ -127,14 +125,11 @@ static void update_extremes(extremes *e, const shown_run *run, int signal)
     if (extremes_pairs(e, run, signal) != NULL) {
         return;
     }
+    const size_t blocks = (t->row_count + EXTREMES_BLOCK - 1) / EXTREMES_BLOCK;
+    double *pairs = g_renew(double, e->pairs[signal], 2 * blocks);
 
     // the last block may have been begun only: it is done again, and then what is new
-    const size_t blocks = (t->row_count + EXTREMES_BLOCK - 1) / EXTREMES_BLOCK;
-    double *pairs = realloc(e->pairs[signal], 2 * blocks * sizeof *pairs);
-    if (pairs == NULL) {
-        free(e->pairs[signal]);
-    }
-    for (size_t b = e->rows[signal] / EXTREMES_BLOCK; pairs != NULL && b < blocks; b++) {
+    for (size_t b = e->rows[signal] / EXTREMES_BLOCK; b < blocks; b++) {
         const size_t begin = b * EXTREMES_BLOCK;
         const value_range found =
             range_of_rows(t, signal, NULL, begin, begin + EXTREMES_BLOCK - 1);
@@ -142,11 +137,7 @@ static void update_extremes(extremes *e, const shown_run *run, int signal)
         pairs[2 * b + 1] = found.high;
     }
     e->pairs[signal] = pairs;
-    if (pairs != NULL) {
-        e->rows[signal] = t->row_count;
-    } else {
-        e->rows[signal] = 0;
-    }
+    e->rows[signal] = t->row_count;
 }
 
 // --- axes of values --------------------------------------------------------------------
@@ -157,6 +148,8 @@ static value_range calm_range(const trace *t, int signal, size_t first, size_t l
 {
     enum { ROWS = 4096, STICKS_OUT = 50 }; // one in so many
     static double values[ROWS];
+
+    // the finite values of those rows, in order
     const size_t end = last < t->row_count ? last + 1 : t->row_count;
     const size_t stride = (end - first) / ROWS + 1;
     size_t count = 0;
@@ -170,37 +163,50 @@ static value_range calm_range(const trace *t, int signal, size_t first, size_t l
         return value_range_empty;
     }
     qsort(values, count, sizeof *values, compare_numbers);
-    const double low = values[count / STICKS_OUT],
-                 high = values[count - 1 - count / STICKS_OUT];
+
+    // without those that stick out, and with a margin
+    const double low = values[count / STICKS_OUT];
+    const double high = values[count - 1 - count / STICKS_OUT];
     const double margin = 0.05 * (high - low);
     return (value_range){low - margin, high + margin};
 }
 
-// What a pane's signals do between two instants, in the first of the runs shown or in
-// all.
+// The range of a pane's signals in one of the runs shown, between two instants.
+static value_range range_in_run(const pane *p, const extremes *e, const shown_run *run,
+                                double from, double to)
+{
+    // one more row at the end, to which the line continues
+    const trace *t = run->trace;
+    const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
+    value_range found = value_range_empty;
+    for (int k = 0; k < p->count; k++) {
+        const int signal = p->signals[k];
+        if (p->hidden >> k & 1) {
+            continue;
+        }
+        if (p->scaling == AXIS_CALM) {
+            value_range_widen(&found, calm_range(t, signal, first, last));
+        } else {
+            const double *pairs = extremes_pairs(e, run, signal);
+            value_range_widen(&found, range_of_rows(t, signal, pairs, first, last));
+        }
+    }
+    return found;
+}
+
+// The same in the first of the runs shown or in all.
 static value_range range_between(const explorer_model *model, const pane *p, double from,
                                  double to, bool first_only)
 {
     shown_run runs[SHOWN_RUNS];
-    const int count = model_runs(model, p, runs);
+    int count = model_runs(model, p, runs);
+    if (first_only) {
+        count = 1;
+    }
     value_range found = value_range_empty;
-    for (int run = 0; run < (first_only ? 1 : count); run++) {
-        const trace *t = runs[run].trace;
-        // one more row at the end, to which the line continues
-        const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
-        for (int k = 0; k < p->count; k++) {
-            const double *pairs =
-                extremes_pairs(&model->extremes[run], &runs[run], p->signals[k]);
-            value_range seen;
-            if (p->hidden >> k & 1) {
-                seen = value_range_empty;
-            } else if (p->scaling == AXIS_CALM) {
-                seen = calm_range(t, p->signals[k], first, last);
-            } else {
-                seen = range_of_rows(t, p->signals[k], pairs, first, last);
-            }
-            value_range_widen(&found, seen);
-        }
+    for (int i = 0; i < count; i++) {
+        value_range_widen(&found,
+                          range_in_run(p, &model->extremes[i], &runs[i], from, to));
     }
     return found;
 }
@@ -211,22 +217,25 @@ bool view_pane_axis(const explorer_model *model, const explorer_view *view, int 
     assert(index >= 0 && index < PANES);
     const pane *p = &view->panes.pane[index];
     const bool subtracts = model_subtracts(model) || p->view == VIEW_RESIDUAL;
-    double from, to;
     if (!pane_is_over_time(p) || (subtracts && pane_is_derived(p))) {
         return false;
     }
+
+    // the range of what is visible
+    double from, to;
     view_window(model, view, &from, &to);
     const value_range seen = range_between(model, p, from, to, false);
     if (!(seen.high >= seen.low)) {
         return false;
     }
 
-    // what was found counts unless the axis grows or is fixed
-    const bool grown = p->scaling == AXIS_GROW && p->grown.high >= p->grown.low;
+    // it counts unless the axis is fixed or grows
     if (p->scaling == AXIS_FIXED) {
         *axis = p->fixed;
+    } else if (p->scaling == AXIS_GROW && p->grown.high >= p->grown.low) {
+        *axis = value_range_opened(p->grown);
     } else {
-        *axis = value_range_opened(grown ? p->grown : seen);
+        *axis = value_range_opened(seen);
     }
     return true;
 }

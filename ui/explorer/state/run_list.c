@@ -1,9 +1,9 @@
 #include "ui/explorer/state/run_list.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/text_stream.h"
@@ -14,11 +14,12 @@
 
 static bool has_input(const session_input *inputs, int count, const session_input *wanted)
 {
-    bool found = false;
     for (int i = 0; i < count; i++) {
-        found = found || session_same_input(&inputs[i], wanted);
+        if (session_same_input(&inputs[i], wanted)) {
+            return true;
+        }
     }
-    return found;
+    return false;
 }
 
 int run_list_of_scenario(const run_list *list, const session *s)
@@ -52,43 +53,55 @@ static void run_list_input_text(const session_input *in, char *text, size_t size
     const char *name = strchr(parameter_table[in->parameter].path, '.') + 1;
     char value[SESSION_INPUT_TEXT];
     input_value_text(in, value);
-    snprintf(text, size, in->kind == SESSION_INPUT_TIMED ? "%s %s from %.4g s" : "%s %s",
-             name, value, in->time);
+    if (in->kind == SESSION_INPUT_TIMED) {
+        snprintf(text, size, "%s %s from %.4g s", name, value, in->time);
+    } else {
+        snprintf(text, size, "%s %s", name, value);
+    }
 }
 
 // Appends the changes of one list that another one does not have.
 static void append_others(const session_input *of, int count, const session_input *other,
                           int other_count, char *text, size_t size)
 {
-    bool first = true;
+    const char *separator = "";
     for (int i = 0; i < count; i++) {
-        char one[SESSION_INPUT_TEXT + 80];
-        if (!has_input(other, other_count, &of[i])) {
-            run_list_input_text(&of[i], one, sizeof one);
-            text_add(text, size, "%s%s", first ? "" : ", ", one);
-            first = false;
+        if (has_input(other, other_count, &of[i])) {
+            continue;
         }
+        char one[SESSION_INPUT_TEXT + 80];
+        run_list_input_text(&of[i], one, sizeof one);
+        text_add(text, size, "%s%s", separator, one);
+        separator = ", ";
     }
 }
 
 void run_list_differences(const pinned_run *p, const session *s, char *text, size_t size)
 {
     assert(size > 0);
-    char here[256] = "";
     const run_origin *o = &p->from;
     text[0] = '\0';
+
+    // of another scenario its name and changes
     if (!same_base(&o->base, &s->base)) {
-        snprintf(text, size, "of %s%s", o->base.name, o->input_count > 0 ? ": " : "");
+        text_add(text, size, "of %s", o->base.name);
+        if (o->input_count > 0) {
+            text_add(text, size, ": ");
+        }
         append_others(o->inputs, o->input_count, NULL, 0, text, size);
         return;
     }
+
+    // the changes that it has, then those that the present run has
+    char here[256] = "";
     append_others(o->inputs, o->input_count, s->inputs, s->input_count, text, size);
     append_others(s->inputs, s->input_count, o->inputs, o->input_count, here,
                   sizeof here);
     if (here[0] != '\0') {
-        text_add(text, size, "%s(now: %s)", text[0] ? " " : "", here);
+        const char *blank = text[0] != '\0' ? " " : "";
+        text_add(text, size, "%s(now: %s)", blank, here);
     } else if (text[0] == '\0') {
-        snprintf(text, size, "the same");
+        text_add(text, size, "the same");
     }
 }
 
@@ -103,27 +116,33 @@ const char *scenario_leaf(const char *name)
     return name;
 }
 
-// A name for the present run that no other of the list has.
-static void propose_name(const run_list *list, const session *s, char name[RUN_NAME])
+static bool has_name(const run_list *list, const char *name)
 {
-    char text[SESSION_INPUT_TEXT + 80];
-    snprintf(text, sizeof text, "%s",
-             run_list_of_scenario(list, s) < list->count ? scenario_leaf(s->base.name)
-                                                         : AS_OPENED);
+    for (int i = 0; i < list->count; i++) {
+        if (strcmp(list->runs[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
 
+// A name for the present run that no other of the list has.
+static void propose_run_name(const run_list *list, const session *s, char name[RUN_NAME])
+{
     // the last change describes best what is new
+    char text[SESSION_INPUT_TEXT + 80];
     if (s->input_count > 0) {
         run_list_input_text(&s->inputs[s->input_count - 1], text, sizeof text);
+    } else if (run_list_of_scenario(list, s) < list->count) {
+        snprintf(text, sizeof text, "%s", scenario_leaf(s->base.name));
+    } else {
+        snprintf(text, sizeof text, "%s", AS_OPENED);
     }
 
     // a number follows where that name is taken
-    bool taken = true;
-    for (int n = 1; taken && n <= 100; n++) {
-        snprintf(name, RUN_NAME, n > 1 ? "%s (%d)" : "%s", text, n);
-        taken = false;
-        for (int i = 0; i < list->count; i++) {
-            taken = taken || strcmp(list->runs[i].name, name) == 0;
-        }
+    snprintf(name, RUN_NAME, "%s", text);
+    for (int n = 2; has_name(list, name) && n <= 100; n++) {
+        snprintf(name, RUN_NAME, "%s (%d)", text, n);
     }
 }
 
@@ -155,7 +174,7 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
     // the rows are shared, the changes are copied
     snprintf(p.name, sizeof p.name, "%s", name);
     if (name[0] == '\0') {
-        propose_name(list, s, p.name);
+        propose_run_name(list, s, p.name);
     }
     TRY(run_origin_take(&p.from, s, f));
     if (run_share(&s->run, &p.run) != STATUS_OK) {
@@ -180,10 +199,14 @@ void run_list_drop(run_list *list, int index)
     // without the baseline the last one takes its place
     if (list->baseline == index) {
         list->baseline = list->count - 1;
-    } else {
-        list->baseline = list->baseline - (list->baseline > index);
+    } else if (list->baseline > index) {
+        list->baseline--;
     }
-    list->selected -= list->selected > 0 && list->selected >= list->count;
+
+    // the selection stays within the list
+    if (list->selected > 0 && list->selected >= list->count) {
+        list->selected--;
+    }
 }
 
 // --- a sweep ---------------------------------------------------------------------------
@@ -200,8 +223,11 @@ bool lab_sweep_is_map(const lab_sweep *sweep)
 
 int lab_sweep_total(const lab_sweep *sweep)
 {
-    return (int)sweep->axis.count *
-           (lab_sweep_is_map(sweep) ? (int)sweep->second.count : 1);
+    const int across = (int)sweep->axis.count;
+    if (lab_sweep_is_map(sweep)) {
+        return across * (int)sweep->second.count;
+    }
+    return across;
 }
 
 bool lab_sweep_is_done(const lab_sweep *sweep)
@@ -242,7 +268,7 @@ void lab_sweep_end(lab_sweep *sweep)
     }
     sweep_axis_finish(&sweep->axis);
     sweep_axis_finish(&sweep->second);
-    free(sweep->summaries);
+    g_free(sweep->summaries);
     sweep->axis = sweep->second = (sweep_axis){0};
     sweep->summaries = NULL;
     sweep->count = sweep->selected = 0;
@@ -272,24 +298,21 @@ static status read_axis(sweep_axis *axis, const char *definition, fault *f)
 static status read_sweep(lab_sweep *fresh, const char *definition, fault *f)
 {
     char first[256];
-    const char *rest = text_cut(definition, " ", first, sizeof first);
-    const bool map = *rest != '\0';
+    const char *second = text_cut(definition, " ", first, sizeof first);
     TRY(read_axis(&fresh->axis, first, f));
-    if (map) {
-        TRY(read_axis(&fresh->second, rest, f));
+    size_t most = SWEPT_RUNS;
+    if (*second != '\0') {
+        most = MAP_CELLS;
+        TRY(read_axis(&fresh->second, second, f));
     }
-    const size_t runs = fresh->axis.count * (map ? fresh->second.count : 1);
-    const size_t most = map ? MAP_CELLS : SWEPT_RUNS;
+    const size_t runs = (size_t)lab_sweep_total(fresh);
     FAULT_IF(
         runs > most, f, STATUS_BAD_ARGUMENT,
         "%zu runs are too many here, at most %zu: 'impactlab sweep' takes any number",
         runs, most);
-    FAULT_IF(map && fresh->axis.parameter == fresh->second.parameter, f,
-             STATUS_BAD_ARGUMENT, "a map takes two different parameters");
-    fresh->summaries = calloc(runs, sizeof *fresh->summaries);
-    if (fresh->summaries == NULL) {
-        return fault_no_memory(f);
-    }
+    FAULT_IF(lab_sweep_is_map(fresh) && fresh->axis.parameter == fresh->second.parameter,
+             f, STATUS_BAD_ARGUMENT, "a map takes two different parameters");
+    fresh->summaries = g_new0(summary, runs);
     return STATUS_OK;
 }
 
@@ -297,55 +320,60 @@ status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
 {
     lab_sweep fresh = {.metric = sweep->metric, .computed = sweep->computed};
     const status code = read_sweep(&fresh, definition, f);
-    lab_sweep_end(code == STATUS_OK ? sweep : &fresh);
-    if (code == STATUS_OK) {
-        *sweep = fresh;
+    if (code != STATUS_OK) {
+        lab_sweep_end(&fresh);
+        return code;
     }
-    return code;
+    lab_sweep_end(sweep);
+    *sweep = fresh;
+    return STATUS_OK;
+}
+
+// The scenario of a sweep's next run: all but the swept parameters is the present run's.
+static status next_scenario(const lab_sweep *sweep, const scenario *base, scenario *next,
+                            fault *f)
+{
+    parameters *p = &next->parameters;
+    double values[2];
+    lab_sweep_values(sweep, sweep->count, values);
+    *next = *base;
+    TRY(parameter_set_number(p, sweep->axis.parameter, values[0], f));
+    if (lab_sweep_is_map(sweep)) {
+        TRY(parameter_set_number(p, sweep->second.parameter, values[1], f));
+    }
+    return parameters_resolve(p, f);
 }
 
 status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
 {
     assert(!lab_sweep_is_done(sweep));
     const bool map = lab_sweep_is_map(sweep);
-    const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
-    double values[2];
+    scenario s;
     run_result run = {0};
-    lab_sweep_values(sweep, sweep->count, values);
-
-    // everything but the parameters is the present run's
-    scenario s = *base;
-    status code = STATUS_OK;
-    for (int i = 0; i <= map && code == STATUS_OK; i++) {
-        code = parameter_set_number(&s.parameters, axes[i]->parameter, values[i], f);
-    }
-    if (code == STATUS_OK) {
-        code = parameters_resolve(&s.parameters, f);
-    }
+    status code = next_scenario(sweep, base, &s, f);
     if (code == STATUS_OK) {
         run_scenario(&s, !map, &run);
         loss_unless(run.summary.status != STATUS_NO_MEMORY);
-        if (map || run.trace.row_count > 0) {
-            code = STATUS_OK;
-        } else {
+        if (!map && run.trace.row_count == 0) {
             code = summary_fault(&run.summary, f);
         }
     }
+    if (code != STATUS_OK) {
+        lab_sweep_end(sweep);
+        run_finish(&run);
+        return code;
+    }
 
     // of a map the summary alone is kept
-    const bool kept = code == STATUS_OK && !map;
-    if (kept) {
-        sweep->runs[sweep->count] = (swept_run){values[0], run, ++sweep->computed};
-    }
-    if (code == STATUS_OK) {
-        sweep->summaries[sweep->count++] = run.summary;
-    } else {
-        lab_sweep_end(sweep);
-    }
-    if (!kept) {
+    sweep->summaries[sweep->count] = run.summary;
+    if (map) {
         run_finish(&run);
+    } else {
+        const double value = sweep->axis.values[sweep->count];
+        sweep->runs[sweep->count] = (swept_run){value, run, ++sweep->computed};
     }
-    return code;
+    sweep->count++;
+    return STATUS_OK;
 }
 
 // --- the difference --------------------------------------------------------------------
@@ -357,23 +385,21 @@ void difference_finish(run_difference *d)
 }
 
 // Appends the difference of one row.
-static status add_row(run_difference *d, const trace *run, const trace *other, size_t row)
+static status add_difference(run_difference *d, const trace *run, const trace *other,
+                             size_t row)
 {
-    const double none[1] = {0};
-
     const sample *now = &run->rows[row];
     const sample beside = trace_sample_at(other, now->time, trace_side(run, row));
 
-    // signal by signal; states stay this run's own
+    // signal by signal; states stay this run's own, and the time is no difference
     sample difference = *now;
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
         if (!signal_is_state(i)) {
             ((double *)&difference)[i] -= ((const double *)&beside)[i];
         }
     }
-
-    // the time is no difference
     difference.time = now->time;
+    const double none[1] = {0};
     return trace_add_row(&d->trace, &difference, none, none);
 }
 
@@ -384,7 +410,7 @@ void difference_update(run_difference *d, unsigned long run, const trace *t,
         return;
     }
 
-    // of another run everything is computed anew, of one that grew the rest
+    // another run begins again, of one that grew the rest is added
     if (d->run != run || d->rows > t->row_count ||
         d->trace.arrays[TRACE_ROWS].size == 0) {
         trace_finish(&d->trace);
@@ -393,12 +419,16 @@ void difference_update(run_difference *d, unsigned long run, const trace *t,
         d->run = run;
         d->rows = 0;
     }
-    const double begin = other->rows[0].time,
-                 end = other->rows[other->row_count - 1].time;
+
+    // outside of the other one there is nothing to compare
+    const double begin = other->rows[0].time;
+    const double end = other->rows[other->row_count - 1].time;
     for (; d->rows < t->row_count; d->rows++) {
-        // outside of the other one there is nothing to compare
         const double time = t->rows[d->rows].time;
-        if (time > end || (time >= begin && add_row(d, t, other, d->rows) != STATUS_OK)) {
+        if (time > end) {
+            break;
+        }
+        if (time >= begin && add_difference(d, t, other, d->rows) != STATUS_OK) {
             break;
         }
     }
@@ -406,14 +436,12 @@ void difference_update(run_difference *d, unsigned long run, const trace *t,
 
 double difference_first_beyond(const run_difference *d, int signal, double tolerance)
 {
-    const trace *t = &d->trace;
-    size_t r = 0;
     assert(signal >= 0 && signal < signal_count);
-    while (r < t->row_count && !(fabs(signal_value(&t->rows[r], signal)) > tolerance)) {
-        r++;
-    }
-    if (r < t->row_count) {
-        return t->rows[r].time;
+    const trace *t = &d->trace;
+    for (size_t r = 0; r < t->row_count; r++) {
+        if (fabs(signal_value(&t->rows[r], signal)) > tolerance) {
+            return t->rows[r].time;
+        }
     }
     return -1;
 }

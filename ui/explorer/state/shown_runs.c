@@ -4,6 +4,15 @@
 
 #include <assert.h>
 
+// The highest bits of the identity of a run's rows: those of two kinds are never the
+// same.
+enum { ID_MEASURED = 1, ID_PINNED, ID_RESIDUAL, ID_SWEPT, ID_DIFFERENCE = 6 };
+
+static unsigned long id_of(unsigned long kind, unsigned long number)
+{
+    return kind << 61 | number;
+}
+
 unsigned long model_run_id(const explorer_model *model)
 {
     return ((unsigned long)model->opened << 32) | model->session.version;
@@ -29,42 +38,46 @@ int model_runs(const explorer_model *model, const pane *p, shown_run runs[SHOWN_
 {
     const session *s = &model->session;
     const run_list *pins = &model->pinned;
-    const unsigned long pinned_id = 1ul << 62, swept_id = 1ul << 63;
-    int count = 0;
 
     // data minus the run, or the run minus the baseline, alone
     if (p != NULL && p->view == VIEW_RESIDUAL) {
-        runs[0] = (shown_run){SHOWN_MEASURED, 0, &model->residual.trace,
-                              3ul << 61 | model->residual.built};
-        return model->residual.trace.row_count > 0;
+        const run_difference *d = &model->residual;
+        runs[0] = (shown_run){SHOWN_MEASURED, 0, &d->trace, id_of(ID_RESIDUAL, d->built)};
+        return d->trace.row_count > 0;
     }
     if (model_subtracts(model)) {
-        runs[0] = (shown_run){SHOWN_DIFFERENCE, 0, &model->difference.trace,
-                              pinned_id | swept_id | model->difference.built};
+        const run_difference *d = &model->difference;
+        runs[0] =
+            (shown_run){SHOWN_DIFFERENCE, 0, &d->trace, id_of(ID_DIFFERENCE, d->built)};
         return 1;
     }
 
-    // the present one, the pinned ones, the sweep's, the one before, what was measured
+    // the present one, the pinned ones, the sweep's
+    int count = 0;
     runs[count++] = (shown_run){SHOWN_PRESENT, 0, &s->run.trace, model_run_id(model)};
     for (int i = 0; i < pins->count; i++) {
         const pinned_run *r = &pins->runs[i];
         if (!r->hidden) {
             runs[count++] =
-                (shown_run){SHOWN_PINNED, i, &r->run.trace, pinned_id | r->id};
+                (shown_run){SHOWN_PINNED, i, &r->run.trace, id_of(ID_PINNED, r->id)};
         }
     }
     for (int i = 0; i < lab_sweep_curves(&model->sweep); i++) {
         const swept_run *r = &model->sweep.runs[i];
-        runs[count++] = (shown_run){SHOWN_SWEPT, i, &r->run.trace, swept_id | r->id};
+        runs[count++] =
+            (shown_run){SHOWN_SWEPT, i, &r->run.trace, id_of(ID_SWEPT, r->id)};
     }
+
+    // the one before an adjustment, and what was measured
     if (s->has_ghost) {
         runs[count++] =
             (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, model_run_id(model)};
     }
     if (model->measured.row_count > 0) {
         runs[count++] = (shown_run){SHOWN_MEASURED, 0, &model->measured,
-                                    pinned_id >> 1 | model->measured_id};
+                                    id_of(ID_MEASURED, model->measured_id)};
     }
+    assert(count <= SHOWN_RUNS);
     return count;
 }
 

@@ -25,25 +25,34 @@ static void define_panes(const explorer_model *model, explorer_view *view)
     panes_define(&view->panes, &wishes);
 }
 
+// The number of a law's own that it begins with, or what it presses with if it does; -1
+// if it has none.
+static int parameter_of_law(const controller *law)
+{
+    const int force = PARAMETER_INDEX(control.force);
+    int first = -1;
+    for (int i = 0; i < law->parameter_count; i++) {
+        char path[PARAMETER_NAME];
+        snprintf(path, sizeof path, "control.%s", law->parameters[i].name);
+        const int own = parameter_find(path);
+        if (own == force) {
+            return force;
+        }
+        if (i == 0) {
+            first = own;
+        }
+    }
+    return first;
+}
+
 // The parameter that a run is about: what its law presses with, or the voltage.
 static int main_parameter(const explorer_model *model)
 {
     const controller *law =
         controller_of(model->session.effective.parameters.control.law);
-    const int force = PARAMETER_INDEX(control.force);
-    int found = -1;
-
-    // what the law presses with, if it does, else the first number of its own
-    for (int i = 0; law != NULL && i < law->parameter_count && found != force; i++) {
-        char path[PARAMETER_NAME];
-        snprintf(path, sizeof path, "control.%s", law->parameters[i].name);
-        const int own = parameter_find(path);
-        if (i == 0 || own == force) {
-            found = own;
-        }
-    }
-    if (found >= 0) {
-        return found;
+    const int own = law != NULL ? parameter_of_law(law) : -1;
+    if (own >= 0) {
+        return own;
     }
     if (model_has_law(model)) {
         return PARAMETER_INDEX(control.rate);
@@ -66,7 +75,7 @@ static void begin_lesson(explorer_model *model, explorer_view *view)
 }
 
 // How a session is shown at first.
-static void show_anew(explorer_model *model, explorer_view *view)
+static void show_from_start(explorer_model *model, explorer_view *view)
 {
     model->opened++;
     if (view->side.panel == PANEL_SWEEP) {
@@ -101,7 +110,7 @@ status state_init(explorer_model *model, explorer_view *view, scenario *s,
     view->playback.slow = USUAL_SLOW;
     view->side.panel = PANEL_PARAMETERS;
     scenario_menu_read(&view->scenarios);
-    show_anew(model, view);
+    show_from_start(model, view);
     return STATUS_OK;
 }
 
@@ -139,7 +148,7 @@ static void replace_session(explorer_model *model, explorer_view *view, session 
                                         NULL) == STATUS_OK);
     }
     run_list_name_strangers(&model->pinned, &model->session);
-    show_anew(model, view);
+    show_from_start(model, view);
 }
 
 status state_take_session(explorer_model *model, explorer_view *view, session *fresh,
@@ -270,12 +279,10 @@ static int common_force(const trace *a, const trace *b)
 // The first instant at which a signal is above a level [s], NaN if it never is.
 static double first_above(const trace *t, int signal, double level)
 {
-    size_t r = 0;
-    while (r < t->row_count && !(signal_value(&t->rows[r], signal) > level)) {
-        r++;
-    }
-    if (r < t->row_count) {
-        return t->rows[r].time;
+    for (size_t r = 0; r < t->row_count; r++) {
+        if (signal_value(&t->rows[r], signal) > level) {
+            return t->rows[r].time;
+        }
     }
     return (double)NAN;
 }
@@ -320,7 +327,7 @@ static void update_residual(explorer_model *model, const explorer_view *view)
         return;
     }
 
-    // a run that grows has more to compare with: all of it anew
+    // a run that grows has more to compare with: all of it is computed again
     const trace *t = &model->session.run.trace;
     const unsigned long both =
         model_run_id(model) * 1000003 + model->measured_id * 997 + t->row_count;
