@@ -41,18 +41,18 @@ static void enter_prompt(explorer *ex)
     static palette_entry entries[PALETTE_ENTRIES];
     prompt *p = &ex->input.prompt;
     char line[LINE_TEXT];
-    bool goes_on = false;
+    bool needs_argument = false;
     const int at = palette_shows(p) ? ex->view.palette.selected : -1;
 
     // a copy: the command may open the prompt again
     snprintf(line, sizeof line, "%s", p->text);
     if (at >= 0 &&
         at < palette_find(&ex->view.scenarios, &ex->view.keys, p->text, entries)) {
-        palette_line(&ex->view.scenarios, &ex->view.keys, entries[at], line, &goes_on);
+        palette_line(&ex->view.scenarios, &ex->view.keys, entries[at], line, &needs_argument);
     }
     p->open = false;
     act_clear_message(&ex->input);
-    if (goes_on) {
+    if (needs_argument) {
         prompt_open(p, NULL, "%s", line);
         return;
     }

@@ -39,20 +39,20 @@ const int explorer_command_count =
 int explorer_command_find(const char *name)
 {
     int found = -1, matches = 0;
-
-    // the whole name, else the only one that begins with it
     for (int i = 0; i < explorer_command_count; i++) {
-        if (strcmp(explorer_command_table[i].name, name) == 0) {
+        const char *own = explorer_command_table[i].name;
+        if (strcmp(own, name) == 0) {
             return i;
         }
 
         // a beginning never means the one that asks no questions
-        const char *own = explorer_command_table[i].name;
         if (strncmp(own, name, strlen(name)) == 0 && own[strlen(own) - 1] != '!') {
             found = i;
             matches++;
         }
     }
+
+    // the only one that begins so
     if (matches == 1) {
         return found;
     }
@@ -87,13 +87,14 @@ int key_of_name(const char *name, size_t length)
         }
     }
 
-    // Ctrl with a letter, or one character and no more
-    const bool control = length == 3 && text[0] == 'C' && text[1] == '-';
-    const char *rest = text;
-    const uint32_t glyph = glyph_decode(&rest);
-    if (control) {
+    // Ctrl with a letter
+    if (length == 3 && text[0] == 'C' && text[1] == '-') {
         return text[2] & 0x1f;
     }
+
+    // one character and no more; a byte that is none is decoded as a question mark
+    const char *rest = text;
+    const uint32_t glyph = glyph_decode(&rest);
     if (*rest == '\0' && (glyph != '?' || name[0] == '?')) {
         return (int)glyph;
     }
@@ -102,19 +103,20 @@ int key_of_name(const char *name, size_t length)
 
 void key_name(int key, char *text, size_t size)
 {
-    char name[8] = {'C', '-', (char)(key | 0x60)};
+    // by name; what a binding can hold needs no other name than "<"
+    for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++) {
+        if (key_names[i].key == key && key != '<') {
+            snprintf(text, size, "%s", key_names[i].name);
+            return;
+        }
+    }
 
-    // by name, as Ctrl with a letter, or as itself; what a binding can hold needs no
-    // other name
+    // as itself, or as Ctrl with a letter
+    char name[8] = {'C', '-', (char)(key | 0x60)};
     if (key >= ' ') {
         glyph_encode((uint32_t)key, name);
     }
     snprintf(text, size, "%s", name);
-    for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++) {
-        if (key_names[i].key == key && key != '<') {
-            snprintf(text, size, "%s", key_names[i].name);
-        }
-    }
 }
 
 // A key of the explorer's own.
@@ -126,6 +128,19 @@ typedef struct binding {
 
 enum { BINDINGS = 128 };
 
+// Reads a word of a command's keys, KEY or KEY:ARGUMENT.
+static binding read_binding(const char *word, const char *command)
+{
+    binding b;
+    const char *argument = text_cut(word, ":", b.name, sizeof b.name);
+    b.key = key_of_name(b.name, strlen(b.name));
+    snprintf(b.line, sizeof b.line, "%s", command);
+    if (*argument != '\0') {
+        text_add(b.line, sizeof b.line, " %s", argument);
+    }
+    return b;
+}
+
 // All of them in the order of the commands, read from their table once; key 0 behind the
 // last.
 static const binding *built_in_keys(void)
@@ -134,15 +149,12 @@ static const binding *built_in_keys(void)
     static int count, read;
     for (; read < explorer_command_count; read++) {
         const explorer_command *c = &explorer_command_table[read];
-        for (const char *keys = c->keys; *keys != '\0';) {
+        const char *keys = c->keys;
+        while (*keys != '\0') {
             char word[2 * KEY_NAME];
-            binding *b = &all[count++];
-            assert(count <= BINDINGS);
             keys = text_cut(keys, " ", word, sizeof word);
-            const char *argument = text_cut(word, ":", b->name, sizeof b->name);
-            b->key = key_of_name(b->name, strlen(b->name));
-            snprintf(b->line, sizeof b->line, *argument != '\0' ? "%s %s" : "%s", c->name,
-                     argument);
+            assert(count < BINDINGS);
+            all[count++] = read_binding(word, c->name);
         }
     }
     return all;
@@ -169,25 +181,31 @@ int key_own(const key_bindings *b, int key)
 
 bool key_bind(key_bindings *b, int key, const char *line)
 {
-    const int index = key_own(b, key), at = index >= 0 ? index : b->count;
-    if (at < USER_KEYS) {
-        b->own[at].key = key;
-        snprintf(b->own[at].line, sizeof b->own[at].line, "%s", line);
-        if (index < 0) {
-            b->count++;
+    int at = key_own(b, key);
+    if (at < 0) {
+        if (b->count == USER_KEYS) {
+            return false;
         }
+        at = b->count++;
     }
-    return at < USER_KEYS;
+    b->own[at].key = key;
+    snprintf(b->own[at].line, sizeof b->own[at].line, "%s", line);
+    return true;
 }
 
 const char *key_line(const key_bindings *b, int key)
 {
-    const int index = key_own(b, key);
-    const char *line = index >= 0 ? b->own[index].line : key_built_in_line(key);
-    if (line != NULL && line[0] != '\0') {
-        return line;
+    const int own = key_own(b, key);
+    const char *line;
+    if (own >= 0) {
+        line = b->own[own].line;
+    } else {
+        line = key_built_in_line(key);
     }
-    return NULL;
+    if (line == NULL || line[0] == '\0') {
+        return NULL;
+    }
+    return line;
 }
 
 // Whether a line is a command with any arguments.
@@ -197,21 +215,30 @@ static bool begins_with(const char *line, const char *command)
     return strncmp(line, command, length) == 0 && strchr(" ", line[length]) != NULL;
 }
 
+// Adds a name to a list with blanks between them.
+static void add_name(char *text, size_t size, const char *name)
+{
+    if (text[0] != '\0') {
+        text_add(text, size, " ");
+    }
+    text_add(text, size, "%s", name);
+}
+
 void key_names_of(const key_bindings *b, const char *command, char *text, size_t size)
 {
-    char name[KEY_NAME];
     text[0] = '\0';
 
     // the user's keys first, then the explorer's that are not overridden
     for (int i = 0; i < b->count; i++) {
         if (begins_with(b->own[i].line, command)) {
+            char name[KEY_NAME];
             key_name(b->own[i].key, name, sizeof name);
-            text_add(text, size, "%s%s", text[0] ? " " : "", name);
+            add_name(text, size, name);
         }
     }
     for (const binding *own = built_in_keys(); own->key != 0; own++) {
         if (begins_with(own->line, command) && key_own(b, own->key) < 0) {
-            text_add(text, size, "%s%s", text[0] ? " " : "", own->name);
+            add_name(text, size, own->name);
         }
     }
 }

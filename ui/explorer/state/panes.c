@@ -38,20 +38,17 @@ const value_range value_range_empty = {(double)INFINITY, (double)-INFINITY};
 value_range value_range_opened(value_range r)
 {
     // a smaller range than rounding is shown as a flat line
-    const double size = fmax(fabs(r.low), fabs(r.high)), half = fmax(0.5, 1e-12 * size);
-    const bool flat = r.high - r.low < fmax(1e-12, 1e-15 * size);
-    if (flat) {
-        return (value_range){r.low - half, r.high + half};
+    const double size = fmax(fabs(r.low), fabs(r.high));
+    if (r.high - r.low >= fmax(1e-12, 1e-15 * size)) {
+        return r;
     }
-    return r;
+    const double half = fmax(0.5, 1e-12 * size);
+    return (value_range){r.low - half, r.high + half};
 }
 
 // Shows the first pane that has a signal, or the user's own with it if none has.
 static void show_signal(pane_set *set, int signal)
 {
-    pane *own = &set->pane[PANES_OF_TABLE];
-
-    // the first pane with it
     for (int i = 0; i < PANES; i++) {
         for (int k = 0; k < set->pane[i].count; k++) {
             if (set->pane[i].signals[k] == signal) {
@@ -62,6 +59,7 @@ static void show_signal(pane_set *set, int signal)
     }
 
     // no pane has it
+    pane *own = &set->pane[PANES_OF_TABLE];
     if (own->count < PANE_SIGNALS) {
         own->signals[own->count++] = signal;
         own->grown = value_range_empty;
@@ -69,31 +67,37 @@ static void show_signal(pane_set *set, int signal)
     }
 }
 
+static bool is_wanted(const pane_wishes *wishes, int signal)
+{
+    for (int i = 0; i < wishes->signal_count; i++) {
+        if (wishes->signals[i] == signal) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // Hides what was not requested in the panes that hold something that was.
 static void hide_others(pane_set *set, const pane_wishes *wishes)
 {
     for (int i = 0; i < PANES; i++) {
         pane *p = &set->pane[i];
-        unsigned wanted = 0;
+        unsigned others = 0;
+        bool any_wanted = false;
         for (int k = 0; k < p->count; k++) {
-            for (int j = 0; j < wishes->signal_count; j++) {
-                wanted |= (unsigned)(p->signals[k] == wishes->signals[j]) << k;
+            if (is_wanted(wishes, p->signals[k])) {
+                any_wanted = true;
+            } else {
+                others |= 1u << k;
             }
         }
-        if (wanted != 0) {
-            p->hidden = ~wanted & ((1u << p->count) - 1);
-        } else {
-            p->hidden = 0;
-        }
+        p->hidden = any_wanted ? others : 0;
     }
 }
 
 // Shows the requested panes, and the usual ones as far as there is room.
 static void show_panes(pane_set *set, const pane_wishes *wishes)
 {
-    const char *usual = wishes->controlled ? "1352486" : "1342567";
-    int shown = 0;
-
     // none, then the requested ones
     for (int i = 0; i < PANES; i++) {
         set->pane[i].shown = false;
@@ -101,23 +105,39 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
     set->pane[PANES_OF_TABLE] = (pane){.view = VIEW_TIME};
     for (int i = 0; i < wishes->signal_count; i++) {
         show_signal(set, wishes->signals[i]);
-        if (i == 0) {
-            set->focus = 0;
-        }
     }
-
+    if (wishes->signal_count > 0) {
+        set->focus = 0;
+    }
     if (wishes->only) {
         hide_others(set, wishes);
     }
 
-    // then the usual ones
+    // then the usual ones, by their numbers
+    int shown = 0;
     for (int i = 0; i < PANES; i++) {
-        shown += set->pane[i].shown;
+        if (set->pane[i].shown) {
+            shown++;
+        }
     }
+    const char *usual = wishes->controlled ? "1352486" : "1342567";
     for (; *usual != '\0' && shown < wishes->room; usual++) {
         pane *p = &set->pane[*usual - '1'];
-        shown += !p->shown;
-        p->shown = true;
+        if (!p->shown) {
+            p->shown = true;
+            shown++;
+        }
+    }
+}
+
+// Gives a pane the signals of some names, of which the last may be NULL.
+static void set_signals(pane *p, const char *const names[PANE_SIGNALS])
+{
+    p->count = 0;
+    for (int k = 0; k < PANE_SIGNALS && names[k] != NULL; k++) {
+        const int signal = signal_find(names[k]);
+        assert(signal >= 0);
+        p->signals[p->count++] = signal;
     }
 }
 
@@ -126,25 +146,20 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
     const bool same = set->controlled == wishes->controlled;
     set->controlled = wishes->controlled;
     set->room = wishes->room;
-    for (int i = 0; i < PANES; i++) {
-        pane *p = &set->pane[i];
-        p->grown = value_range_empty;
 
-        // the user's own have no names here
-        if (i >= PANES_OF_TABLE) {
-            continue;
+    // those of the table; the user's own keep their signals
+    for (int i = 0; i < PANES_OF_TABLE; i++) {
+        if (set->controlled) {
+            set_signals(&set->pane[i], controlled_panes[i]);
+        } else {
+            set_signals(&set->pane[i], scripted_panes[i]);
         }
-        const char *const *names =
-            set->controlled ? controlled_panes[i] : scripted_panes[i];
-        p->count = 0;
         if (!same) {
-            p->hidden = 0;
+            set->pane[i].hidden = 0;
         }
-        for (int j = 0; j < PANE_SIGNALS && names[j] != NULL; j++) {
-            int signal = signal_find(names[j]);
-            assert(signal >= 0);
-            p->signals[p->count++] = signal;
-        }
+    }
+    for (int i = 0; i < PANES; i++) {
+        set->pane[i].grown = value_range_empty;
     }
     if (!set->chosen) {
         show_panes(set, wishes);
@@ -153,23 +168,23 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
 
 int panes_focused(const pane_set *set)
 {
-    int i = 0;
-    while (i < PANES && !set->pane[(set->focus + i) % PANES].shown) {
-        i++;
-    }
-    if (i < PANES) {
-        return (set->focus + i) % PANES;
+    for (int i = 0; i < PANES; i++) {
+        const int index = (set->focus + i) % PANES;
+        if (set->pane[index].shown) {
+            return index;
+        }
     }
     return -1;
 }
 
 bool pane_has_amounts(const pane *p)
 {
-    bool states = true;
     for (int k = 0; k < p->count; k++) {
-        states = states && signal_is_state(p->signals[k]);
+        if (!signal_is_state(p->signals[k])) {
+            return true;
+        }
     }
-    return !states;
+    return false;
 }
 
 bool pane_is_over_time(const pane *p)
@@ -179,23 +194,35 @@ bool pane_is_over_time(const pane *p)
 
 bool pane_is_derived(const pane *p)
 {
-    bool found = false;
     for (int k = 0; k < p->count; k++) {
-        found = found || signal_is_derived(p->signals[k]);
+        if (signal_is_derived(p->signals[k])) {
+            return true;
+        }
     }
-    return found;
+    return false;
+}
+
+// The place for another pane of the user's: the first that is empty, else the first that
+// is hidden, else the last.
+static int place_of_own(const pane_set *set)
+{
+    for (int i = PANES_OF_TABLE; i < PANES; i++) {
+        if (set->pane[i].count == 0) {
+            return i;
+        }
+    }
+    for (int i = PANES_OF_TABLE; i < PANES; i++) {
+        if (!set->pane[i].shown) {
+            return i;
+        }
+    }
+    return PANES - 1;
 }
 
 int panes_add(pane_set *set, const pane *own)
 {
     assert(own->count > 0);
-    int index = PANES - 1;
-    for (int i = PANES - 1; i >= PANES_OF_TABLE; i--) {
-        const bool hidden = !set->pane[i].shown && set->pane[index].count > 0;
-        if (set->pane[i].count == 0 || hidden) {
-            index = i;
-        }
-    }
+    const int index = place_of_own(set);
     set->pane[index] = *own;
     set->pane[index].shown = true;
     set->pane[index].grown = value_range_empty;
@@ -206,9 +233,9 @@ int panes_add(pane_set *set, const pane *own)
 
 void pane_fix_axis(pane *p, value_range limits)
 {
-    double low = limits.low, high = limits.high;
-    double least = 1e-9 * fmax(fabs(low), fabs(high)) + 1e-15;
-    if (isfinite(low) && isfinite(high) && high - low >= least && high - low < 1e15) {
+    const double size = fmax(fabs(limits.low), fabs(limits.high));
+    const double height = limits.high - limits.low;
+    if (isfinite(size) && height >= 1e-9 * size + 1e-15 && height < 1e15) {
         p->scaling = AXIS_FIXED;
         p->fixed = limits;
     }

@@ -20,24 +20,24 @@ void prompt_open(prompt *p, const char *value, const char *format, ...)
     vsnprintf(p->text, sizeof p->text, format, list);
     va_end(list);
     p->open = true;
+    p->cycling = p->searches = p->replaces = false;
+    p->fixed = 0;
     if (value != NULL) {
         p->fixed = (int)strlen(p->text);
-    } else {
-        p->fixed = 0;
+        p->replaces = value[0] != '\0';
+        text_add(p->text, sizeof p->text, "%s", value);
     }
-    p->replaces = value != NULL && value[0] != '\0';
-    p->cycling = p->searches = false;
-    text_add(p->text, sizeof p->text, "%s", value != NULL ? value : "");
 }
 
 void prompt_type(prompt *p, int key)
 {
     const bool has_value = strlen(p->text) > (size_t)p->fixed, replaces = p->replaces;
     const bool erases = key == ('u' & 0x1f) || (replaces && key == KEY_CODE_BACKSPACE);
+    const bool types = key >= ' ' && key < KEY_CODE_FIRST;
     p->replaces = false;
 
     // the value goes at once; the other keys of the line keep it and continue after it
-    if (has_value && (erases || (replaces && key >= ' ' && key < KEY_CODE_FIRST))) {
+    if (has_value && (erases || (replaces && types))) {
         p->text[p->fixed] = '\0';
     }
     if (!has_value || !erases) {
@@ -47,18 +47,19 @@ void prompt_type(prompt *p, int key)
 
 void text_type(char *text, int key)
 {
+    // a whole UTF-8 character goes, which begins with a byte that is no continuation
     size_t length = strlen(text);
-
-    // backspace takes a whole UTF-8 character, C-u everything; there must be room for the
-    // longest character and the zero behind it
-    if (key == KEY_CODE_BACKSPACE) {
-        while (length > 0 && (text[length - 1] & 0xc0) == 0x80) {
+    if (key == KEY_CODE_BACKSPACE && length > 0) {
+        do {
             length--;
-        }
-        text[length > 0 ? length - 1 : 0] = '\0';
+        } while (length > 0 && (text[length] & 0xc0) == 0x80);
+        text[length] = '\0';
     } else if (key == ('u' & 0x1f)) {
         text[0] = '\0';
-    } else if (key >= ' ' && key < KEY_CODE_FIRST && length + 5 < LINE_TEXT) {
+    }
+
+    // there must be room for the longest character and the zero behind it
+    if (key >= ' ' && key < KEY_CODE_FIRST && length + 5 < LINE_TEXT) {
         glyph_encode((uint32_t)key, text + length);
     }
 }
@@ -160,15 +161,15 @@ static int rank_of(const palette_text *text, const char *words)
     return -1;
 }
 
+// By rank, then by kind, then as their tables have them.
 static int compare_entries(const void *a, const void *b)
 {
     const palette_entry *one = a, *other = b;
-    const int apart = (int)one->kind - (int)other->kind;
     if (one->rank != other->rank) {
         return one->rank - other->rank;
     }
-    if (apart != 0) {
-        return apart;
+    if (one->kind != other->kind) {
+        return (int)one->kind - (int)other->kind;
     }
     return one->index - other->index;
 }
@@ -200,14 +201,19 @@ int palette_find(const scenario_menu *menu, const key_bindings *keys, const char
 }
 
 void palette_line(const scenario_menu *menu, const key_bindings *keys,
-                  palette_entry entry, char line[LINE_TEXT], bool *goes_on)
+                  palette_entry entry, char line[LINE_TEXT], bool *needs_argument)
 {
     // what is in brackets need not be there
-    const char *argument =
-        entry.kind == PALETTE_COMMAND ? explorer_command_table[entry.index].argument : "";
-    *goes_on = argument[0] != '\0' && argument[0] != '[';
-    snprintf(line, LINE_TEXT, "%s%s%s", kinds[entry.kind].command,
-             palette_describe(menu, keys, entry).name, *goes_on ? " " : "");
+    *needs_argument = false;
+    if (entry.kind == PALETTE_COMMAND) {
+        const char *argument = explorer_command_table[entry.index].argument;
+        *needs_argument = argument[0] != '\0' && argument[0] != '[';
+    }
+    snprintf(line, LINE_TEXT, "%s%s", kinds[entry.kind].command,
+             palette_describe(menu, keys, entry).name);
+    if (*needs_argument) {
+        text_add(line, LINE_TEXT, " ");
+    }
 }
 
 bool palette_shows(const prompt *p)

@@ -70,9 +70,9 @@ int palette_find(const scenario_menu *menu, const key_bindings *keys, const char
 palette_text palette_describe(const scenario_menu *menu, const key_bindings *keys,
                               palette_entry entry);
 
-// The command line of an entry; *goes_on: it still needs an argument.
+// The command line of an entry; whether it still needs an argument.
 void palette_line(const scenario_menu *menu, const key_bindings *keys,
-                  palette_entry entry, char line[LINE_TEXT], bool *goes_on);
+                  palette_entry entry, char line[LINE_TEXT], bool *needs_argument);
 
 // Whether an open prompt shows the palette: it searches, or its first word is being
 // typed.

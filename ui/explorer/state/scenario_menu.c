@@ -1,6 +1,7 @@
 #include "ui/explorer/state/scenario_menu.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,27 +13,34 @@
 void scenario_menu_read(scenario_menu *menu)
 {
     const status code = scenario_list(&menu->names, &menu->count, NULL);
+    loss_unless(code != STATUS_NO_MEMORY);
     if (code != STATUS_OK) {
         menu->count = 0;
     }
-    menu->shown = calloc((size_t)menu->count + 1, sizeof *menu->shown);
-    loss_unless(code != STATUS_NO_MEMORY && menu->shown != NULL);
+    menu->shown = g_new0(int, menu->count + 1);
 }
 
-// Puts the lessons, which lie side by side, in the order of the numbers in their titles.
+// Whether two neighbours are lessons in the wrong order, which is that of the numbers in
+// their titles.
+static bool are_swapped_lessons(const menu_text *before, const menu_text *after)
+{
+    return before->is_lesson && after->is_lesson &&
+           strcmp(after->title, before->title) < 0;
+}
+
+// Puts the lessons, which lie side by side, in order.
 static void sort_lessons(scenario_menu *menu)
 {
+    menu_text *texts = menu->texts;
+    char **names = menu->names;
     for (int i = 1; i < menu->count; i++) {
-        for (int k = i;
-             k > 0 && menu->texts[k].is_lesson && menu->texts[k - 1].is_lesson &&
-             strcmp(menu->texts[k].title, menu->texts[k - 1].title) < 0;
-             k--) {
-            const menu_text text = menu->texts[k];
-            char *const name = menu->names[k];
-            menu->texts[k] = menu->texts[k - 1];
-            menu->names[k] = menu->names[k - 1];
-            menu->texts[k - 1] = text;
-            menu->names[k - 1] = name;
+        for (int k = i; k > 0 && are_swapped_lessons(&texts[k - 1], &texts[k]); k--) {
+            const menu_text text = texts[k];
+            char *const name = names[k];
+            texts[k] = texts[k - 1];
+            names[k] = names[k - 1];
+            texts[k - 1] = text;
+            names[k - 1] = name;
         }
     }
 }
@@ -43,11 +51,7 @@ void scenario_menu_read_titles(scenario_menu *menu)
     if (menu->texts != NULL || menu->count == 0) {
         return;
     }
-    menu->texts = calloc((size_t)menu->count, sizeof *menu->texts);
-    loss_unless(menu->texts != NULL);
-    if (menu->texts == NULL) {
-        return;
-    }
+    menu->texts = g_new0(menu_text, menu->count);
 
     // a file that cannot be read has only its name; opening it tells its faults
     for (int i = 0; i < menu->count; i++) {
@@ -68,30 +72,34 @@ void scenario_menu_finish(scenario_menu *menu)
 {
     for (int i = 0; i < menu->count; i++) {
         free(menu->names[i]);
-        free(menu->texts != NULL ? menu->texts[i].title : NULL);
-        free(menu->texts != NULL ? menu->texts[i].description : NULL);
+        if (menu->texts != NULL) {
+            free(menu->texts[i].title);
+            free(menu->texts[i].description);
+        }
     }
-    free(menu->texts);
+    g_free(menu->texts);
     free(menu->names);
-    free(menu->shown);
+    g_free(menu->shown);
     *menu = (scenario_menu){0};
 }
 
 int scenario_menu_find(const scenario_menu *menu, const char *name)
 {
-    int at = -1;
     for (int i = 0; i < menu->count; i++) {
         if (strcmp(menu->names[i], name) == 0) {
-            at = i;
+            return i;
         }
     }
-    return at;
+    return -1;
 }
 
 menu_text scenario_menu_text(const scenario_menu *menu, int index)
 {
     assert(index >= 0 && index < menu->count);
-    menu_text text = menu->texts != NULL ? menu->texts[index] : (menu_text){0};
+    menu_text text = {0};
+    if (menu->texts != NULL) {
+        text = menu->texts[index];
+    }
     if (text.title == NULL) {
         text.title = "";
     }
@@ -105,7 +113,7 @@ int scenario_menu_lines(const scenario_menu *menu, int *selected)
 {
     int count = 0;
     *selected = -1;
-    for (int i = 0; i < menu->count && menu->shown != NULL; i++) {
+    for (int i = 0; i < menu->count; i++) {
         char text[1024];
         snprintf(text, sizeof text, "%s %s", menu->names[i],
                  scenario_menu_text(menu, i).title);
@@ -180,9 +188,11 @@ bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p,
     case LESSON_PINNED:
         return run_list_of_scenario(pinned, s) >= step->pinned;
     case LESSON_RATIO: {
-        const double other =
-            s->has_other ? summary_value(&s->other.summary, step->quantity) : (double)NAN;
-        const double ratio = quantity_of(s, step->quantity) / other;
+        if (!s->has_other) {
+            return false;
+        }
+        const double ratio = quantity_of(s, step->quantity) /
+                             summary_value(&s->other.summary, step->quantity);
         return ratio >= step->low && ratio <= step->high;
     }
     }
