@@ -48,7 +48,8 @@ static void enter_prompt(explorer *ex)
     snprintf(line, sizeof line, "%s", p->text);
     if (at >= 0 &&
         at < palette_find(&ex->view.scenarios, &ex->view.keys, p->text, entries)) {
-        palette_line(&ex->view.scenarios, &ex->view.keys, entries[at], line, &needs_argument);
+        palette_line(&ex->view.scenarios, &ex->view.keys, entries[at], line,
+                     &needs_argument);
     }
     p->open = false;
     act_clear_message(&ex->input);

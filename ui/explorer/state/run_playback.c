@@ -1,12 +1,11 @@
 #include "ui/explorer/state/run_playback.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "render/scene/film.h"
-#include "src/base/text_stream.h"
 
 // --- playing ---------------------------------------------------------------------------
 
@@ -15,17 +14,20 @@
 double playback_slowness(const playback *p, const trace *t, double duration, double time)
 {
     assert(duration > 0);
+    if (p->slow <= 1) {
+        return 1;
+    }
+
+    // the most that any impact asks for which follows an interval without one
     double most = 1, last = -duration;
-    for (size_t i = 0; i < t->event_count && p->slow > 1; i++) {
+    for (size_t i = 0; i < t->event_count; i++) {
         const event *e = &t->events[i];
         if (e->kind != EVENT_IMPACT) {
             continue;
         }
-        const film_clock c = film_clock_round(0, duration, e->time, p->slow);
-        const double here =
-            e->time - last > APART * duration ? film_clock_slowness(&c, time) : 1;
-        if (here > most) {
-            most = here;
+        if (e->time - last > APART * duration) {
+            const film_clock c = film_clock_round(0, duration, e->time, p->slow);
+            most = fmax(most, film_clock_slowness(&c, time));
         }
         last = e->time;
     }
@@ -37,18 +39,20 @@ double playback_next_speed(const playback *p, int direction)
     static const double speeds[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2,
                                     0.5,   1,     2,     5,    10,   20,   50,  100};
     const int count = sizeof speeds / sizeof speeds[0];
-    double wanted = p->speed;
-
-    // from the far end, so that the nearest one beyond the present speed stays
-    for (int i = 0; i < count; i++) {
-        const double next = speeds[direction > 0 ? count - 1 - i : i];
-        const bool beyond =
-            direction > 0 ? next > p->speed * 1.001 : next < p->speed * 0.999;
-        if (beyond) {
-            wanted = next;
+    if (direction > 0) {
+        for (int i = 0; i < count; i++) {
+            if (speeds[i] > p->speed * 1.001) {
+                return speeds[i];
+            }
+        }
+    } else {
+        for (int i = count - 1; i >= 0; i--) {
+            if (speeds[i] < p->speed * 0.999) {
+                return speeds[i];
+            }
         }
     }
-    return wanted;
+    return p->speed;
 }
 
 // --- the tip that is pulled ------------------------------------------------------------
@@ -93,27 +97,19 @@ double pull_force(const tip_pull *p, plane_vector tip, plane_vector across)
 static void add_entry(run_log *log, log_entry entry)
 {
     if (log->count == log->capacity) {
-        const size_t more = log->capacity ? 2 * log->capacity : 64;
-        log_entry *grown = realloc(log->entries, more * sizeof *grown);
-        loss_unless(grown != NULL);
-        if (grown != NULL) {
-            log->entries = grown;
-        }
-        if (grown != NULL) {
-            log->capacity = more;
-        }
+        log->capacity = log->capacity > 0 ? 2 * log->capacity : 64;
+        log->entries = g_renew(log_entry, log->entries, log->capacity);
     }
-    if (log->count < log->capacity) {
-        log->entries[log->count++] = entry;
-    }
+    log->entries[log->count++] = entry;
 }
 
 // The events up to a time.
 static void add_events(run_log *log, const trace *t, double until)
 {
-    for (; log->events < t->event_count && t->events[log->events].time <= until;
-         log->events++) {
-        add_entry(log, (log_entry){t->events[log->events].time, (int)log->events, 0});
+    while (log->events < t->event_count && t->events[log->events].time <= until) {
+        const double time = t->events[log->events].time;
+        add_entry(log, (log_entry){.time = time, .event = (int)log->events});
+        log->events++;
     }
 }
 
@@ -131,9 +127,11 @@ void run_log_update(run_log *log, unsigned long run, const trace *t, bool comple
         const sample *row = &t->rows[log->rows];
 
         // an event at an instant comes before the resulting mode
-        const double mode =
-            isfinite(row->controller_mode) ? row->controller_mode : log->mode;
         add_events(log, t, row->time);
+        const double mode = row->controller_mode;
+        if (!isfinite(mode)) {
+            continue;
+        }
         if (isfinite(log->mode) && mode != log->mode) {
             add_entry(log, (log_entry){row->time, -1, mode});
         }
@@ -146,24 +144,25 @@ void run_log_update(run_log *log, unsigned long run, const trace *t, bool comple
 
 double run_log_next(const run_log *log, double time, int direction)
 {
-    // from the far end, so that the nearest one beyond the instant stays
-    double found = -1;
-    for (size_t i = 0; i < log->count; i++) {
-        const double at = log->entries[direction > 0 ? log->count - 1 - i : i].time;
-        if (direction > 0) {
-            if (at > time) {
-                found = at;
+    if (direction > 0) {
+        for (size_t i = 0; i < log->count; i++) {
+            if (log->entries[i].time > time) {
+                return log->entries[i].time;
             }
-        } else if (at < time) {
-            found = at;
+        }
+    } else {
+        for (size_t i = log->count; i-- > 0;) {
+            if (log->entries[i].time < time) {
+                return log->entries[i].time;
+            }
         }
     }
-    return found;
+    return -1;
 }
 
 void run_log_forget(run_log *log)
 {
-    free(log->entries);
+    g_free(log->entries);
     *log = (run_log){0};
 }
 

@@ -35,13 +35,14 @@ void parameter_group_name(int parameter, char *name, size_t size)
 // Whether a path matches one of some patterns with blanks between them.
 static bool is_among(const char *path, const char *patterns)
 {
-    char pattern[PARAMETER_NAME];
-    bool found = false;
-    while (*patterns != '\0' && !found) {
+    while (*patterns != '\0') {
+        char pattern[PARAMETER_NAME];
         patterns = text_cut(patterns, " ", pattern, sizeof pattern);
-        found = fnmatch(pattern, path, 0) == 0;
+        if (fnmatch(pattern, path, 0) == 0) {
+            return true;
+        }
     }
-    return found;
+    return false;
 }
 
 void parameter_list_arrange(parameter_list *list, const scenario *s, int selected)
@@ -119,35 +120,36 @@ int parameter_of_name(const char *name)
 {
     const int exact = parameter_find(name);
     const size_t length = strlen(name);
-    int found[3] = {-1, -1, -1}, count[3] = {0};
     if (exact >= 0 || length == 0) {
         return exact;
     }
 
-    // the last part, a beginning of it, a beginning of the path: in this order
+    // how many have this last part, a beginning of it, a beginning of the path
+    enum { IS_LEAF, BEGINS_LEAF, BEGINS_PATH, WAYS };
+    int found[WAYS] = {-1, -1, -1}, count[WAYS] = {0};
     for (int i = 0; i < parameter_count; i++) {
         const char *path = parameter_table[i].path, *leaf = strchr(path, '.') + 1;
-        const bool fits[3] = {strcmp(leaf, name) == 0, strncmp(leaf, name, length) == 0,
-                              strncmp(path, name, length) == 0};
-        for (int k = 0; k < 3; k++) {
-            if (fits[k]) {
-                found[k] = i;
+        const bool fits[WAYS] = {strcmp(leaf, name) == 0,
+                                 strncmp(leaf, name, length) == 0,
+                                 strncmp(path, name, length) == 0};
+        for (int way = 0; way < WAYS; way++) {
+            if (fits[way]) {
+                found[way] = i;
+                count[way]++;
             }
-            count[k] += fits[k];
         }
     }
-    int k = 0;
-    if (!(count[0] > 0)) {
-        if (count[1] > 0) {
-            k = 1;
-        } else {
-            k = 2;
+
+    // the first way in which any fits
+    for (int way = 0; way < WAYS; way++) {
+        if (count[way] > 1) {
+            return -2;
+        }
+        if (count[way] == 1) {
+            return found[way];
         }
     }
-    if (count[k] > 1) {
-        return -2;
-    }
-    return found[k];
+    return -1;
 }
 
 // --- sliders ---------------------------------------------------------------------------
@@ -161,9 +163,10 @@ bool slider_scale_of(int parameter, double value, slider_scale *scale)
 double slider_share(const slider_scale *scale, double value)
 {
     assert(scale->high > scale->low);
-    double share = scale->logarithmic
-                       ? log(value / scale->low) / log(scale->high / scale->low)
-                       : (value - scale->low) / (scale->high - scale->low);
+    double share = (value - scale->low) / (scale->high - scale->low);
+    if (scale->logarithmic) {
+        share = log(value / scale->low) / log(scale->high / scale->low);
+    }
     return fmax(0, fmin(1, share));
 }
 
@@ -181,7 +184,7 @@ double slider_value(const slider_scale *scale, int parameter, double share, int 
     } else {
         double width = scale->high - scale->low;
         value = scale->low + share * width;
-        step = pow(10, floor(log10(width / (cells > 1 ? cells : 1))));
+        step = pow(10, floor(log10(width / fmax(cells, 1))));
     }
 
     // whole steps, within what the table allows

@@ -14,34 +14,40 @@
 #include "src/scenario/outside.h"
 #include "ui/explorer/state/command_list.h"
 
+// Makes each folder on the way to a file, for its user alone.
+static bool make_folders(char *path)
+{
+    bool there = true;
+    for (char *end = strchr(path + 1, '/'); end != NULL; end = strchr(end + 1, '/')) {
+        *end = '\0';
+        there = mkdir(path, 0700) == 0 || errno == EEXIST;
+        *end = '/';
+    }
+    return there;
+}
+
 bool user_file(user_folder folder, const char *name, char *path, size_t size, bool make)
 {
+    assert(size > 0);
     static const struct {
         const char *variable, *usual;
     } folders[] = {{"XDG_CONFIG_HOME", ".config"}, {"XDG_STATE_HOME", ".local/state"}};
-    assert(size > 0);
     const char *base = getenv(folders[folder].variable), *home = getenv("HOME");
 
     // where such files belong, or the usual place below the home folder
-    const bool given = base != NULL && base[0] == '/';
-    const bool usual = home != NULL && home[0] == '/';
-    if (given) {
+    if (base != NULL && base[0] == '/') {
         snprintf(path, size, "%s", base);
+    } else if (home != NULL && home[0] == '/') {
+        snprintf(path, size, "%s/%s", home, folders[folder].usual);
     } else {
-        snprintf(path, size, "%s/%s", usual ? home : "~", folders[folder].usual);
-    }
-    text_add(path, size, "/impactlab/%s", name);
-    if ((!given && !usual) || strlen(path) + 1 >= size) {
+        snprintf(path, size, "~/%s/impactlab/%s", folders[folder].usual, name);
         return false;
     }
-
-    // each folder on the way
-    bool there = true;
-    for (char *end = path; make && (end = strchr(end + 1, '/')) != NULL; *end = '/') {
-        *end = '\0';
-        there = mkdir(path, 0700) == 0 || errno == EEXIST;
+    text_add(path, size, "/impactlab/%s", name);
+    if (strlen(path) + 1 >= size) {
+        return false;
     }
-    return there;
+    return !make || make_folders(path);
 }
 
 // --- consent ---------------------------------------------------------------------------
@@ -92,7 +98,11 @@ static bool digest_of(const scenario *s, char digest[SHA256_TEXT])
             return false;
         }
         sha256_add_text(&h, content);
-        sha256_add_text(&h, source->kind == OUTSIDE_COMMAND ? folder : "");
+        if (source->kind == OUTSIDE_COMMAND) {
+            sha256_add_text(&h, folder);
+        } else {
+            sha256_add_text(&h, "");
+        }
         reads = true;
     }
     sha256_finish(&h, digest);
@@ -127,21 +137,24 @@ bool consent_remembered(const scenario *s)
 
 status consent_remember(const scenario *s, bool *kept, fault *f)
 {
-    char path[1024], digest[SHA256_TEXT], what[2 * PARAMETER_TEXT_SIZE];
+    char path[1024], digest[SHA256_TEXT];
     *kept = digest_of(s, digest) &&
             user_file(USER_SETTINGS, "allowed", path, sizeof path, true);
     if (!*kept || has_digest(path, digest)) {
         return STATUS_OK;
     }
+
+    // the names, for people who read the file
     const control_parameters *c = &s->parameters.control;
-    snprintf(what, sizeof what, "%s: %s", s->name,
-             c->law == LAW_PROCESS ? c->command : c->plugin);
-    make_printable(what, 0);
+    const char *code = c->law == LAW_PROCESS ? c->command : c->plugin;
+    char names[2 * PARAMETER_TEXT_SIZE];
+    snprintf(names, sizeof names, "%s: %s", s->name, code);
+    make_printable(names, 0);
 
     // a line of its own at the end
     FILE *file = fopen(path, "a");
     if (file != NULL) {
-        fprintf(file, "%s %s\n", digest, what);
+        fprintf(file, "%s %s\n", digest, names);
     }
     *kept = file != NULL && fclose(file) == 0;
     FAULT_IF(!*kept, f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path,
