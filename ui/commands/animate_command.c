@@ -76,12 +76,15 @@ static int open_all_filmed(filmed_runs *m, const arguments *a)
         return complain("%d runs in one film, expected at most %d", count, FILM_RUNS);
     }
 
+    // the scenarios
     for (int i = 0; i < a->operand_count; i++) {
         const int ended = open_filmed(m, a, a->operands[i]);
         if (ended != EXIT_DONE) {
             return ended;
         }
     }
+
+    // the first one with each change
     for (int i = 0; i < a->besides.count; i++) {
         const int ended = open_beside(m, a, a->besides.items[i]);
         if (ended != EXIT_DONE) {
@@ -125,16 +128,20 @@ static int film_runs(const arguments *a, const filmed_runs *m)
                       .seconds = a->seconds,
                       .slow = a->slow,
                       .stop = &interrupted};
+
+    // frames take long: on a terminal a bar shows how far they are
     const bool shows_progress = isatty(STDERR_FILENO) && !a->quiet;
     if (shows_progress) {
         o.progress = show_frame_progress;
     }
 
+    // the runs with their names in the film
     film_run runs[FILM_RUNS];
     for (int i = 0; i < m->run; i++) {
         runs[i] = (film_run){&m->scenarios[i], &m->results[i], m->names[i]};
     }
 
+    // the film itself
     fault f = {0};
     const status code = film_write(runs, m->run, &o, a->output, &f);
     if (shows_progress) {
@@ -156,6 +163,7 @@ static int check_film_request(const arguments *a)
         return complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, "
                         "FILE.gif, FILE.webp, or a folder for PNG frames");
     }
+
     const int ended = check_view(a);
     if (ended != EXIT_DONE) {
         return ended;
@@ -174,6 +182,7 @@ static int animate(const arguments *a)
         return ended;
     }
 
+    // all runs, then the film of them
     SCOPED(filmed_runs_finish) filmed_runs m = {0};
     ended = open_all_filmed(&m, a);
     for (int i = 0; i < m.opened && ended == EXIT_DONE; i++) {

@@ -62,6 +62,7 @@ static search_entry command_entry(const void *context, int i)
     texts[count++] = c->summary;
     texts[count++] = c->help;
 
+    // options that only some commands have say what they are for
     for (int t = 0; c->options[t] != NULL; t++) {
         const option_table *table = c->options[t];
         if (table == &page_options || table == &view_options) {
@@ -153,6 +154,7 @@ static void print_answer(FILE *stream, const search_source *sources,
         passage = e.texts[hit->text];
     }
 
+    // its name, the passage, and where to read on
     fprintf(stream, "\n");
     print_name(stream, hit, &e);
     if (!print_passage(stream, passage)) {
@@ -177,6 +179,7 @@ int print_answers(FILE *stream, const command_list *all, const char *question)
         return 0;
     }
 
+    // where the pages are
     char *folder = shipped_path(SHIPPED_MANUAL);
     loss_unless(folder != NULL);
     if (folder != NULL) {
@@ -192,6 +195,8 @@ int print_meanings(FILE *stream, const command_list *all, const char *words)
     search_hit hits[MOST_MEANINGS];
     list_sources(all, sources);
     const int count = search_titles(sources, SOURCES, words, hits, MOST_MEANINGS);
+
+    // each with its explanation
     if (count > 0) {
         fprintf(stream, "it may mean\n");
     }

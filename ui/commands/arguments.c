@@ -52,6 +52,7 @@ static int read_length(const option_row *o, const char *text, double *value)
     const char *rest;
     double number;
 
+    // a number, and one of the units behind it
     if (decimal_read(text, &number, &rest)) {
         for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
             const double mm = number * units[i].mm;
@@ -93,6 +94,7 @@ static int read_size(const option_row *o, const char *text, grid_size *size)
 {
     char *rest = NULL;
     long width = strtol(text, &rest, 10), height = 0;
+
     if (*rest == 'x') {
         height = strtol(rest + 1, &rest, 10);
     }
@@ -275,6 +277,7 @@ static void remember_word(arguments *a, const char *before, const char *word)
         quote = "";
     }
 
+    // behind what is remembered
     const char *so_far = "";
     if (a->command_line != NULL) {
         so_far = a->command_line;
@@ -306,6 +309,7 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
     bool given[COMMAND_OPTIONS] = {false};
     int found;
 
+    // complaints are ours, not those of getopt
     list_for_getopt(a->command, longs, shorts);
     opterr = 0;
     while (*exit_status == EXIT_DONE &&
@@ -321,11 +325,14 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
             break;
         }
 
+        // the option; --help ends the reading
         const int i = find_row(a->command, found);
         const option_row *o = command_option(a->command, i);
         if (o == help_options.rows) {
             return true;
         }
+
+        // its value
         const bool may_repeat = o->type == OPTION_FLAG || option_is_list(o->type);
         if (given[i] && !may_repeat) {
             *exit_status = complain("option --%s was given twice", o->name);
@@ -373,12 +380,14 @@ static int check_named_file(const char *text)
 // Checks the files that an option names. Returns the exit status.
 static int check_option_files(const arguments *a, const option_row *o)
 {
+    // one file, or several
     if (o->type == OPTION_FILE) {
         const char *const *file = option_place(a, o);
         if (*file != NULL) {
             return check_named_file(*file);
         }
     }
+
     if (o->type == OPTION_FILES) {
         const option_list *list = option_place(a, o);
         for (int i = 0; i < list->count; i++) {
@@ -395,6 +404,7 @@ static int check_option_files(const arguments *a, const option_row *o)
 // are read. Returns the exit status.
 static int check_inputs(const arguments *a)
 {
+    // operands, then values of options
     for (int i = 0; i < a->operand_count; i++) {
         const int ended = check_named_file(a->operands[i]);
         if (ended != EXIT_DONE) {
@@ -436,9 +446,11 @@ static int claim_results(const arguments *a)
                             o->name, path);
         }
         if (!result_places_add(path)) {
-            const bool is_output = strcmp(path, "-") == 0;
-            return complain("two results cannot both be written to %s",
-                            is_output ? "the standard output" : path);
+            const char *place = path;
+            if (strcmp(path, "-") == 0) {
+                place = "the standard output";
+            }
+            return complain("two results cannot both be written to %s", place);
         }
     }
 
@@ -463,6 +475,8 @@ static int check_operands(const arguments *a)
         return complain("%s does not know what to do with '%s' (see impactlab %s --help)",
                         self->name, a->operands[self->most], self->name);
     }
+
+    // what they and the options name
     const int ended = claim_results(a);
     if (ended != EXIT_DONE) {
         return ended;

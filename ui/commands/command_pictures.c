@@ -25,6 +25,8 @@ static int read_theme(const arguments *a, figure_theme *theme)
             *theme = THEME_DARK;
         }
     }
+
+    // the same by other options
     if (a->mono) {
         spellings++;
         *theme = THEME_MONO;
@@ -79,6 +81,8 @@ int read_picture_options(const arguments *a, figure_options *o)
                           .signals = a->signals,
                           .latex = a->latex,
                           .command = a->command_line};
+
+    // what may be wrong
     int ended = read_theme(a, &o->look.theme);
     if (ended != EXIT_DONE) {
         return ended;
@@ -154,11 +158,13 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs,
         return ended;
     }
 
+    // the figure, drawn once it is made
     fault f = {0};
     owned_figure *created = run_figure_create(title, NULL, 0, runs, run_count, &o, &f);
     if (created == NULL) {
         return complain_fault(&f);
     }
+
     SCOPED(artwork_finish) artwork drawn = artwork_of_owned(created);
     if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
         return complain_fault(&f);

@@ -1,6 +1,7 @@
 // impactlab figures: draws the figures and tables of the thesis.
 #include "ui/commands/command.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,6 +68,7 @@ static int choose_figures(figure_list *list, const arguments *a)
     }
     list->figures = g_new0(asked_figure, list->count);
 
+    // in their order
     for (size_t i = 0; i < list->count; i++) {
         if (a->operand_count == 0) {
             list->figures[i].figure = thesis_figure_at((int)i);
@@ -95,6 +97,7 @@ static void order_slow_first(figure_list *list)
             list->order[placed++] = i;
         }
     }
+    assert(placed == list->count);
 }
 
 static void figure_list_finish(figure_list *list)
@@ -154,12 +157,14 @@ static status collect_figure(void *context, size_t i, const void *result, fault 
         return STATUS_OK; // as if it had not been begun
     }
 
+    // count it, and keep the first fault
     collected->done = true;
     if (code == STATUS_OK) {
         list->drawn++;
     } else if (list->failed == NULL) {
         list->failed = &collected->fault;
     }
+
     if (code != STATUS_OK && code != STATUS_CANNOT_WRITE) {
         *f = collected->fault;
         return code;

@@ -38,6 +38,7 @@ static int write_all_man_pages(const command_list *all, const char *folder)
         return EXIT_FAILED;
     }
 
+    // the program, then each command
     const man_page overview = {.all = all};
     g_autofree char *overview_path = text_printf("%s/impactlab.1", folder);
     int result = write_file(overview_path, write_page, &overview);

@@ -17,6 +17,7 @@ static void print_paragraphs(FILE *stream, const char *text)
         if (!p.literal || !was_literal) {
             fprintf(stream, "\n");
         }
+
         if (p.literal) {
             fprintf(stream, "%.*s\n", p.bytes, p.start);
         } else {
@@ -103,13 +104,19 @@ void print_commands(FILE *stream, const command_list *all)
         COMMAND_GROUPS(GROUP_TITLE)
 #undef GROUP_TITLE
     };
+
+    // how it is called
     fprintf(stream,
             "impactlab %s: impact and force control of a flexible robot arm\n\n"
             "usage: impactlab COMMAND [ARGUMENT]...\n",
             lab_version());
+
+    // what there is
     for (int group = 0; group < COMMAND_GROUP_COUNT; group++) {
         print_group(stream, all, group, titles[group]);
     }
+
+    // where to read on
     fprintf(stream, "\nimpactlab COMMAND --help tells more about a command, impactlab "
                     "help QUESTION searches\n"
                     "the manual.\n"
@@ -129,6 +136,7 @@ char *troff_text(const char *text)
         if (begins_line && (*c == '.' || *c == '\'')) {
             g_string_append(escaped, "\\&");
         }
+
         if (*c == '\\') {
             g_string_append(escaped, "\\e");
         } else if (*c == '-') {
@@ -164,6 +172,7 @@ static void write_paragraphs(FILE *stream, const char *text)
             fprintf(stream, ".PP\n");
         }
 
+        // the text between these marks
         g_autofree char *words = g_strndup(p.start, (size_t)p.bytes);
         g_autofree char *escaped = troff_text(words);
         fprintf(stream, "%s\n", escaped);
@@ -238,6 +247,7 @@ static void write_program_page(FILE *stream, const command_list *all)
                      "written whole or not at all. impactlab --version prints the "
                      "version.");
 
+    // each command in a line
     write_section(stream, "Commands");
     for (int i = 0; i < all->count; i++) {
         const command *c = all->items[i];

@@ -69,6 +69,8 @@ int interrupts_end(int result)
         signal(interrupted, SIG_DFL);
         raise(interrupted);
     }
+
+    // signals do what they did before
     for (int i = 0; catching && i < SIGNALS; i++) {
         sigaction(signals[i], &before[i], NULL);
     }

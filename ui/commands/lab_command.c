@@ -50,6 +50,7 @@ static int run_script(explorer *ex, const char *path)
         return complain("%s cannot be read: %s", path, strerror(errno));
     }
 
+    // line by line
     char line[LINE_TEXT];
     int result = EXIT_DONE;
     for (int number = 1; result == EXIT_DONE && !ex->input.quit; number++) {
@@ -158,16 +159,21 @@ static void show_lab(live_lab *lab)
     screen *s = &lab->screen;
     fit_pictures(lab);
 
+    // fit the grid to the terminal
     int width, height;
     terminal_size(&width, &height);
     if (width != s->width || height != s->height) {
         screen_resize(s, width, height);
     }
+
+    // what looks ask of the terminal
     terminal_mouse(l->mouse);
     l->shown_depth = l->depth;
     if (l->depth == DEPTH_AUTO) {
         l->shown_depth = terminal_depth();
     }
+
+    // the picture
     explorer_draw(lab->ex, s);
     terminal_show(s, l->glyphs, l->theme, l->depth, l->redraw);
     l->redraw = false;
@@ -236,6 +242,7 @@ static void take_input(live_lab *lab, terminal_input in)
             explorer_key(lab->ex, in.code);
         }
         break;
+
     case TERMINAL_POINTER:
         explorer_point(lab->ex, in.pointer);
         break;
@@ -283,6 +290,8 @@ static bool run_on_terminal(explorer *ex)
                     .outdated = true,
                     .pause = FRAME,
                     .advanced_to = now_in_seconds()};
+
+    // show what changed, wait for input, take it
     while (!ex->input.quit && !lab.left) {
         double now = now_in_seconds();
         if (lab.outdated && now - lab.shown_at >= lab.pause) {
@@ -380,7 +389,8 @@ static int open_explorer(explorer *ex, const arguments *a)
     // a session brings its own scenarios: the lab opens, and then it
     const bool is_session = named[text_stem(named, ".session")] != '\0';
     scenario s;
-    int result = command_scenario_open(&s, is_session ? first_scenario : named, a);
+    const char *first = is_session ? first_scenario : named;
+    int result = command_scenario_open(&s, first, a);
     if (result != EXIT_DONE) {
         return result;
     }
@@ -433,6 +443,7 @@ static int explore(const arguments *a)
         return complain_fault(&f);
     }
 
+    // opened, used and closed
     int result = open_explorer(&ex, a);
     if (result != EXIT_DONE) {
         return result;

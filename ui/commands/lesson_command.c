@@ -24,6 +24,7 @@ static int list_lessons(const arguments *a)
         return result;
     }
 
+    // scenarios that are lessons, in the order of their names
     for (int i = 0; i < l.count; i++) {
         scenario_heading heading;
         const char *name = lesson_name(l.names[i]);
@@ -59,6 +60,7 @@ static int open_lesson(const arguments *a, const char *wanted)
         return result;
     }
 
+    // the first lesson of that name
     bool found = false;
     for (int i = 0; i < l.count && !found; i++) {
         scenario_heading heading;

@@ -29,6 +29,7 @@ static int list_scenario(scenario_listing *l, const char *name, int width)
         return result;
     }
 
+    // an object, a complaint or a line
     if (l->entries != NULL) {
         json_t *title;
         if (heading.faulty) {

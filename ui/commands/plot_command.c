@@ -67,11 +67,13 @@ static int plot_recipe(const arguments *a)
         return ended;
     }
     if (o.overlay != NULL || o.signals != NULL) {
+        const char *option = o.overlay != NULL ? "overlay" : "signals";
         return complain(
             "a recipe says itself which signals and data it shows, --%s is for runs",
-            o.overlay != NULL ? "overlay" : "signals");
+            option);
     }
 
+    // where the picture goes
     g_autofree char *path = g_strdup(a->plot);
     if (path == NULL) {
         path = default_picture(recipe);
@@ -85,9 +87,10 @@ static int plot_recipe(const arguments *a)
         return ended;
     }
 
+    // a default name is not known to the user yet
     const int result = draw_recipe(recipe, &o, path);
     if (result == EXIT_DONE && !a->quiet) {
-        say("%s: %s\n", recipe, path); // a default name is not known to the user yet
+        say("%s: %s\n", recipe, path);
     }
     return result;
 }

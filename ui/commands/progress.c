@@ -190,6 +190,7 @@ static void format_time_left(const sweep_progress *p, char *text, size_t size)
         return;
     }
 
+    // minutes and seconds, with hours where there are any
     const double rate = (double)p->done_now / p->elapsed_s;
     const long left = lround(fmin((double)(p->total - p->done) / rate, longest));
     if (left < 3600) {

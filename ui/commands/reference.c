@@ -41,6 +41,7 @@ static const char *remark_if(bool holds, const char *remark)
 const char *format_range(const parameter_info *info, const char *separator,
                          char text[RANGE_TEXT])
 {
+    // words are listed, numbers have two ends
     const char *words;
     switch (info->type) {
     case PARAMETER_CHOICE:
@@ -258,6 +259,7 @@ static void write_man_parameter(FILE *stream, int index)
     g_autofree char *description = troff_text(info->description);
     g_autofree char *defaults = defaults_text(index);
 
+    // its name with its unit, what it does, and its values
     fprintf(stream, ".TP\n\\fB%s\\fR", path);
     if (info->unit[0] != '\0') {
         fprintf(stream, " in %s", info->unit);
@@ -287,6 +289,8 @@ static void write_scenario_page(FILE *stream)
             "title, description, script, expect, panes and lesson stand beside the "
             "groups; the manual describes them under \\(lqScenario files\\(rq.\n",
             lab_version());
+
+    // a section for each group
     for (int i = 0; i < parameter_count; i++) {
         g_autofree char *group = group_that_begins(i);
         if (group != NULL) {
@@ -309,6 +313,7 @@ void write_reference(FILE *stream, const char *page)
         {"quantities", write_quantities_chapter}, {"laws", write_laws_chapter},
         {"events", write_events_chapter},         {"scenario.5", write_scenario_page},
     };
+
     for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
         if (strcmp(pages[i].page, page) == 0) {
             pages[i].write(stream);

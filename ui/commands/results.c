@@ -64,6 +64,7 @@ int write_file(const char *path, result_writer *write, const void *found)
         return EXIT_DONE;
     }
 
+    // whole or not at all
     if (whole_file_open(&file, path, &f) != STATUS_OK) {
         return complain_fault(&f);
     }

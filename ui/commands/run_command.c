@@ -37,6 +37,8 @@ static void print_setup(const scenario *s)
     const parameters *p = &s->parameters;
     char model[VALUE_TEXT], joint[VALUE_TEXT], method[VALUE_TEXT];
     char wall[VALUE_TEXT] = "no", drive[64];
+
+    // the wall, and what moves the arm
     if (p->wall.kind != WALL_NONE) {
         value_text(p, "wall.kind", wall);
     }
@@ -72,6 +74,8 @@ static void print_quantities(const parameters *p, const summary *m)
     for (int i = 0; i < summary_count; i++) {
         const summary_info *quantity = &summary_table[i];
         const double value = summary_value(m, i);
+
+        // one that did not occur, a count, or a number with a unit
         if (isnan(value)) {
             if (!quantity->special) {
                 printf("  %-28s           -\n", quantity->label);
@@ -100,6 +104,8 @@ static void print_change(const scenario *s, const event *e)
 static void print_event(const scenario *s, const event *e)
 {
     printf("  %10.6f s  %s", e->time, event_name(e->kind));
+
+    // what its name does not say
     switch (e->kind) {
     case EVENT_IMPACT:
         printf("   %.4g N s at %.4g m/s, %.4g J lost", e->impulse, e->speed, e->loss);
@@ -126,6 +132,7 @@ static void print_events(const scenario *s, const trace *t)
         return;
     }
 
+    // the first ones
     printf("\nEvents:\n");
     for (size_t i = 0; i < shown; i++) {
         print_event(s, &t->events[i]);
@@ -232,9 +239,13 @@ static int report_ending(const finished_run *run, status code)
 {
     const char *name = run->scenario->name;
     const summary *m = &run->result.summary;
+
+    // it was ended before its time
     if (code == STATUS_STOPPED) {
         return run_stopped(run->scenario, "the results are those of this time");
     }
+
+    // it failed
     if (code != STATUS_OK) {
         const char *why = m->message;
         if (why[0] == '\0') {
@@ -246,6 +257,8 @@ static int report_ending(const finished_run *run, status code)
         }
         return EXIT_FAILED;
     }
+
+    // it came to its end
     if (m->inaccurate) {
         complain("%s is inaccurate: %s", name, m->message);
         return EXIT_FAILED;
@@ -265,6 +278,7 @@ static void print_notes(const scenario *s)
                         idle.why);
     }
 
+    // what the amplifier makes of a voltage beyond its limit changes the run
     const motor_parameters *m = &s->parameters.motor;
     if (s->parameters.control.law == LAW_NONE && fabs(m->voltage) > m->voltage_limit) {
         fprintf(stderr,

@@ -151,6 +151,8 @@ static void write_bash_offer(FILE *stream, const option_row *o)
 static void write_bash_command(FILE *stream, const command_list *all, const command *c)
 {
     fprintf(stream, "    %s)\n        case $before in\n", c->name);
+
+    // options that have a value
     const option_row *o;
     for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
         if (o->type == OPTION_FLAG) {
@@ -165,6 +167,7 @@ static void write_bash_command(FILE *stream, const command_list *all, const comm
         fprintf(stream, "; return ;;\n");
     }
 
+    // what stands there else
     g_autofree char *options = option_words(c);
     g_autofree char *operands = operand_words(all, c);
     const char *scenarios = "";
@@ -207,9 +210,13 @@ static void write_bash(FILE *stream, const command_list *all)
         "    fi\n"
         "    case $command in\n",
         paths, quantities, commands);
+
+    // each command with its options
     for (int i = 0; i < all->count; i++) {
         write_bash_command(stream, all, all->items[i]);
     }
+
+    // what all commands share
     fprintf(stream, "    esac\n"
                     "    case $word in\n"
                     "    -*) _impactlab_words \"$options\"; return ;;\n"
@@ -314,6 +321,8 @@ static void write_zsh(FILE *stream, const command_list *all)
 {
     g_autofree char *paths = parameter_words();
     g_autofree char *quantities = quantity_words();
+
+    // what several commands offer, and the names of all
     fprintf(stream,
             "#compdef impactlab\n"
             "_impactlab_scenarios() {\n"
@@ -338,6 +347,8 @@ static void write_zsh(FILE *stream, const command_list *all)
         g_autofree char *described = quoted_text(c->summary, zsh_special);
         fprintf(stream, "\n            '%s:%s'", c->name, described);
     }
+
+    // each command with its options
     fprintf(stream, "\n        )\n"
                     "        _describe command commands ;;\n"
                     "    argument)\n"
@@ -345,6 +356,8 @@ static void write_zsh(FILE *stream, const command_list *all)
     for (int i = 0; i < all->count; i++) {
         write_zsh_command(stream, all, all->items[i]);
     }
+
+    // a file that is sourced instead of loaded registers itself
     fprintf(stream, "        esac ;;\n"
                     "    esac\n"
                     "}\n"
@@ -408,6 +421,8 @@ static void write_fish_command(FILE *stream, const command_list *all, const comm
     g_autofree char *described = quoted_text(c->summary, "");
     fprintf(stream, "complete -c impactlab -n __fish_use_subcommand -f -a %s -d '%s'\n",
             c->name, described);
+
+    // operands
     if (c->operand_word != NULL) {
         g_autofree char *words = operand_words(all, c);
         fprintf(stream, FISH_OF_COMMAND " -a '%s'\n", c->name, words);
@@ -416,6 +431,7 @@ static void write_fish_command(FILE *stream, const command_list *all, const comm
         fprintf(stream, FISH_OF_COMMAND " -F -a '(__impactlab_scenarios)'\n", c->name);
     }
 
+    // options
     const option_row *o;
     for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
         write_fish_option(stream, c, o);

@@ -49,6 +49,7 @@ static void print_law_setting(const scenario *s, const controller *law, int i)
         return;
     }
 
+    // its own
     snprintf(path, sizeof path, "control.settings.%s", number.name);
     number_format_short(value, shown);
     snprintf(range, sizeof range, "%g to %g", number.minimum, number.maximum);
@@ -88,6 +89,8 @@ static void print_parameters(const scenario *s)
 {
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n",
            "parameter", "value", "unit", "range");
+
+    // the settings follow the text in which they are given
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         char value[128], range[RANGE_TEXT];
@@ -155,6 +158,8 @@ static int show_scenario(const arguments *a, scenario *s)
     print_indented(stdout, s->description, (int)strlen(s->description), DESCRIPTION_WIDTH,
                    0);
     print_parameters(s);
+
+    // what else it has
     if (s->action_count > 0) {
         print_script(s);
     }

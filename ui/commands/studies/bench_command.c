@@ -63,6 +63,7 @@ static status measure_benchmarks(const arguments *a, bench_result results[BENCHM
         TRY(bench_read(a->baseline, before, f));
     }
 
+    // one after the other, each with its line as soon as it is known
     bool any_printed = false;
     for (int i = 0; i < BENCHMARKS; i++) {
         const benchmark *b = &bench_table[i];
@@ -102,6 +103,7 @@ static int measure_and_report(const arguments *a)
         return complain_benchmark(a->only);
     }
 
+    // times, of which an interrupt leaves those that are known
     static const command_results written = {.json = benchmarks_json};
     bench_result results[BENCHMARKS] = {{0}};
     fault f = {0};

@@ -30,6 +30,7 @@ static char *choose_range(const arguments *a, const scenario *s)
         return g_strdup(range);
     }
 
+    // the command, and nothing else
     const char *given = a->varies.items[0];
     if (a->varies.count > 1 || !g_str_has_prefix(given, VOLTAGE_PATH "=")) {
         complain("calibrate varies " VOLTAGE_PATH " and nothing else, once");
@@ -88,6 +89,8 @@ static void print_presses(const void *found)
 {
     const calibrated *done = found;
     say_title(done->scenario);
+
+    // one press a line
     printf("\n  %9s  %9s  %11s  %11s  %9s  %9s  %9s\n", "command/V", "force/N", "hub/rad",
            "K2/(Nm/rad)", "K2/arm.k2", "+-force/N", "+-hub/rad");
     bool any_drifts = false;

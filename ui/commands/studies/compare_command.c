@@ -67,6 +67,7 @@ static int open_combinations(comparison *c, const arguments *a, const scenario *
         sweep_finish(&own);
     }
 
+    // a table of more is refused before anything runs
     const size_t rows = c->varied.run_count * (size_t)c->operands;
     if (rows > MOST_ROWS) {
         return complain("%zu rows are too many for a table, expected at most %d", rows,
@@ -108,6 +109,8 @@ static int open_comparison(comparison *c, const arguments *a)
 {
     c->operands = a->operand_count;
     c->combinations = 1;
+
+    // what is compared, and what it is held against
     c->scenarios = g_new0(scenario, (size_t)c->operands + 1);
     for (int i = 0; i < c->operands; i++) {
         const int ended = open_compared(c, a, a->operands[i]);
@@ -122,12 +125,15 @@ static int open_comparison(comparison *c, const arguments *a)
         }
     }
 
+    // a parameter that no run takes is refused
     for (int k = 0; k < c->varied.axis_count; k++) {
         fault f = {0};
         if (check_effect(c, k, &f) != STATUS_OK) {
             return complain_fault(&f);
         }
     }
+
+    // room for the rows
     c->rows = g_new0(compare_row, (size_t)c->combinations * (size_t)c->operands);
     c->against = g_new0(compare_row, (size_t)c->combinations);
     return EXIT_DONE;
@@ -194,6 +200,8 @@ static bool run_compared(comparison *c, int i, int combination, run_monitor *mon
 static status run_comparison(comparison *c, run_monitor *monitor)
 {
     const bool has_against = c->opened > c->operands;
+
+    // every combination
     for (int k = 0; k < c->combinations; k++) {
         if (has_against && !run_compared(c, c->operands, k, monitor, &c->against[k])) {
             return STATUS_STOPPED;
@@ -308,11 +316,14 @@ static int compare_and_report(const arguments *a)
     if (a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK) {
         return complain("--columns %s: %s", a->columns, f.text);
     }
+
+    // all scenarios, each of which every combination must go with
     const int ended = open_comparison(&c, a);
     if (ended != EXIT_DONE) {
         return ended;
     }
 
+    // the table, which grows row by row
     c.table.rows = c.rows;
     c.table.group = c.operands;
     c.table.varied = c.varied.axes;
@@ -322,6 +333,7 @@ static int compare_and_report(const arguments *a)
     }
     c.drawn = a->plot != NULL && c.varied.axis_count == 0 && c.opened <= TRACE_RUNS;
 
+    // the runs, and what comes of them
     static const command_results results = {.json = comparison_json,
                                             .text = print_comparison,
                                             .plot = plot_comparison,

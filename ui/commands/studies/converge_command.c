@@ -103,6 +103,8 @@ static int plot_forces(const arguments *a, const three_steps *steps, double *num
     const trace *finest = &steps->runs[PANEL_STEPS - 1].trace;
     char label[PANEL_STEPS][48];
     figure_series force[PANEL_STEPS], difference[PANEL_STEPS - 1];
+
+    // the force of each run
     for (int i = 0; i < PANEL_STEPS; i++) {
         const trace *t = &steps->runs[i].trace;
         decimal_print(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms",
@@ -111,12 +113,15 @@ static int plot_forces(const arguments *a, const three_steps *steps, double *num
                             t->row_count, colours[i]);
         force[i].stride = sizeof(sample);
     }
+
+    // what the coarser ones lack of the finest
     for (int i = 0; i < PANEL_STEPS - 1; i++) {
         double *x = numbers + 2 * room * (size_t)i, *y = x + room;
         const size_t count = convergence_difference(&steps->runs[i].trace, finest, x, y);
         difference[i] = curve_of(step_names[i], label[i], x, y, count, colours[i]);
     }
 
+    // one panel below the other
     const figure_panel panels[] = {
         {.y = {.name = "force",
                .label = "Contact force <i>f</i>",
@@ -155,6 +160,8 @@ static int halve_steps_and_report(const arguments *a, scenario *s)
                                             .plot = plot_convergence,
                                             .kept = "the table is that of these steps"};
     three_steps steps = {.scenario = s};
+
+    // a picture needs the runs themselves
     run_result *kept_runs = NULL;
     if (a->plot != NULL) {
         kept_runs = steps.runs;

@@ -115,6 +115,8 @@ static int plot_follow(const arguments *a, const void *found)
 {
     const follow_result *result = found;
     const follow_study *study = &result->study;
+
+    // the curves, by number and law
     figure_series series[FOLLOW_NUMBERS][FOLLOW_LAWS];
     figure_panel panels[FOLLOW_NUMBERS];
     for (int n = 0; n < FOLLOW_NUMBERS; n++) {
@@ -132,6 +134,7 @@ static int plot_follow(const arguments *a, const void *found)
                                    .weight = 1.8};
     }
 
+    // the caption says how far set-point and wall move
     const parameters *p = &result->scenario->parameters;
     char caption[400];
     snprintf(caption, sizeof caption,

@@ -48,6 +48,8 @@ static status read_fit(const arguments *a, const scenario *s, identification *id
     if (a->starts > 0) {
         id->starts = (int)a->starts;
     }
+
+    // what is fitted, and to what
     TRY(identify_available(f));
     for (int i = 0; i < a->fits.count; i++) {
         TRY(identify_add_path(id, a->fits.items[i], f));
@@ -116,10 +118,13 @@ static status compare_links(const arguments *a, fit_outcome *o, fault *f)
     const int asked = c->count;
     c->count = 0; // of those that are done
     for (int i = 0; i < asked; i++) {
+
+        // the fitted arm with this number of links
         scenario other;
         const parameter_change change = {PARAMETER_INDEX(arm.links), c->links[i]};
         TRY(scenario_with(&o->fitted, &change, 1, &other, f));
 
+        // its own fit, from there on
         SCOPED(identify_finish) identification id = {0};
         TRY(read_fit(a, &other, &id, f));
         id.starts = 1;
@@ -186,11 +191,14 @@ static void print_recorded_trace(const recorded_trace *t, const char *what)
 {
     say("  %s %s: shifted by %.3g ms, encoder by %.3g rad;", what, t->file,
         1e3 * t->own[OWN_SHIFT], t->own[OWN_OFFSET]);
+
+    // how large the residuals of each channel are
     for (int c = 0; c < CHANNELS; c++) {
         if (!isnan(t->rms[c])) {
             say(" %s %.3g", signal_table[identify_signals[c]].name, t->rms[c]);
         }
     }
+
     say(" of their noise");
     if (t->contact_count > 0) {
         say("; %d contact%s within %.3g ms, largest force off by %.3g %%",
@@ -211,11 +219,14 @@ static void print_recorded_traces(const identification *id, const char *what)
 static void print_judgement(const fit_outcome *o)
 {
     const identification *id = &o->fit;
+
+    // combinations that the data leave open
     for (int k = 0; k < id->undetermined; k++) {
         char words[1024];
         say("\n  not determined: %s\n", identify_words(id, k, words, sizeof words));
     }
 
+    // what the fit leaves, in all and by trace
     const char *residuals = "correlated: the model lacks something that the data show";
     if (id->white) {
         residuals = "white";
@@ -225,6 +236,7 @@ static void print_judgement(const fit_outcome *o)
     print_recorded_traces(id, "trace");
     print_recorded_traces(&o->validation, "validation");
 
+    // other models of the arm
     const links_comparison *c = &o->compared;
     for (int i = 0; i < c->count; i++) {
         const char *of_links = c->white[i] ? "white" : "correlated";
@@ -244,6 +256,7 @@ static void print_fit(const void *found)
         print_fitted_parameter(&id->fit[i], is_judged);
     }
 
+    // how far to trust them
     if (is_judged) {
         print_judgement(o);
     } else {
@@ -275,6 +288,8 @@ static int plot_fit(const arguments *a, const void *found)
 static bool is_reliable(const identification *id)
 {
     bool reliable = id->undetermined == 0;
+
+    // a value at the end of its range is a limit
     for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
         if (identify_at_end(fit)) {
@@ -285,6 +300,7 @@ static bool is_reliable(const identification *id)
         }
     }
 
+    // residuals must be no larger than noise
     double most;
     const double misfit = identify_misfit(id, &most);
     if (misfit > most) {

@@ -37,15 +37,21 @@ static int check_linear_options(const arguments *a, const scenario *s, linear_pl
     if (place != LINEAR_FREE && s->parameters.wall.kind == WALL_NONE) {
         return complain("there is no wall to press on, try --at free");
     }
+
+    // what is of one loop
     if (varies && (a->mat != NULL || a->nyquist != NULL || a->injects)) {
         return complain("--mat, --nyquist and --inject are of one loop, not of --vary");
     }
     if (varies && s->parameters.control.law == LAW_NONE) {
         return complain("--vary needs a control law, such as --set control.law=hybrid");
     }
+
+    // what needs a loop
     if ((a->nyquist != NULL || a->injects) && !a->looped) {
         return complain("--nyquist and --inject are of the loop of --law");
     }
+
+    // two pictures
     if (a->plot != NULL && a->nyquist != NULL && (a->latex != NULL || share_numbers(a))) {
         return complain(
             "--plot and --nyquist are two pictures: expected names that differ "

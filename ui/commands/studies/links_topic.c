@@ -87,6 +87,8 @@ static void print_tendency(const links_row *row)
     const double *last = &row->value[LINKS_LENGTHS - 3];
     const double ratio = last[2] / last[1], before = last[1] / last[0];
     printf("%s: ", row->label);
+
+    // a limit that is reached, growth or decay, or none of these
     if (!(fabs(last[2]) > 0)) {
         printf("does not occur with 64 links\n");
     } else if (row->enough > 0) {
@@ -155,6 +157,8 @@ static int plot_links(const arguments *a, const void *found)
 {
     const links_result *result = found;
     const links_study *study = &result->study;
+
+    // a curve for each quantity that tends to something
     double shares[LINKS_QUANTITIES][LINKS_LENGTHS];
     figure_series series[LINKS_QUANTITIES];
     int drawn = 0;
@@ -171,6 +175,7 @@ static int plot_links(const arguments *a, const void *found)
         drawn++;
     }
 
+    // all in one panel
     const figure_panel panel = {.y = {.name = "off",
                                       .label = "Off the beam",
                                       .unit = "%",

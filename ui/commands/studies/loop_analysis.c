@@ -113,8 +113,11 @@ static status analyse_loop(analysis *x, bool injects, fault *f)
             f, STATUS_BAD_ARGUMENT, "control.law",
             "--law needs a control law, such as --set control.law=hybrid");
     }
+
     FAULT_IF(injects && !contact, f, STATUS_BAD_ARGUMENT,
              "--inject measures the arm in contact, not %s", x->place_name);
+
+    // measured where that is asked for, or where the law is not linear
     if (injects) {
         return measure_loop(x, f);
     }
@@ -212,6 +215,7 @@ static json_t *root_json(const analysis *x, const root_set *set, double complex 
     }
     json_members(object, "real_per_s:n imaginary_rad_per_s:n damping:n", creal(s),
                  cimag(s), linear_damping(s));
+
     if (x->period > 0) {
         json_members(object, "z_real:n z_imaginary:n", creal(root), cimag(root));
     }
@@ -288,6 +292,8 @@ static void write_roots_csv(FILE *stream, const void *found)
     const analysis *x = found;
     csv_writer w = csv_begin(stream);
     result_headings(&w, columns, sizeof columns / sizeof *columns);
+
+    // a row for each pole and zero
     for (int k = 0; k < SETS; k++) {
         const root_set *set = &x->sets[k];
         for (int i = 0; i < set->count; i++) {
@@ -341,7 +347,8 @@ static void print_margin(const char *name, double value, const char *unit)
 static void print_margins(const analysis *x)
 {
     const linear_margins *m = &x->margins;
-    printf("\n  margins%s:", x->measured ? ", measured" : "");
+    const char *how = x->measured ? ", measured" : "";
+    printf("\n  margins%s:", how);
     print_margin("gain up", m->gain_db, " dB,");
     print_margin("down", m->gain_down_db, " dB;");
     print_margin("phase", m->phase_deg, " degrees;");
@@ -402,9 +409,12 @@ static void print_analysis(const void *found)
     }
     printf("\n");
 
+    // poles and zeros
     for (int set = 0; set < SETS && x->sets[set].values != NULL; set++) {
         print_roots(x, set);
     }
+
+    // the loop
     if (x->response.count > 0) {
         if (x->stable) {
             print_margins(x);
@@ -428,6 +438,7 @@ static int plot_arm(const arguments *a, const analysis *x)
         outputs[1] = LINEAR_FORCE;
     }
 
+    // their answers over frequency
     linear_curve curves[2] = {{.name = NULL}};
     fault f = {0};
     status code = STATUS_OK;
@@ -436,6 +447,7 @@ static int plot_arm(const arguments *a, const analysis *x)
         code = linear_respond(&x->arm.system, outputs[i], 0, &curves[i].response, &f);
     }
 
+    // the picture
     int result;
     if (code == STATUS_OK) {
         result = publish_owned(a, bode_figure_create(x->scenario, curves, 2));
@@ -478,6 +490,8 @@ int analyse_and_report(const arguments *a, const scenario *s, linear_place place
                   .place_name = place_name,
                   .place = place,
                   .least_push = (double)NAN};
+
+    // an interrupt leaves what needs no run
     fault f = {0};
     interrupts_catch();
     const status code = analyse(&x, a, &f);
@@ -485,6 +499,7 @@ int analyse_and_report(const arguments *a, const scenario *s, linear_place place
         return complain_fault(&f);
     }
 
+    // pictures first: what is printed may be cut off
     int result = EXIT_DONE;
     if (a->plot != NULL) {
         result = plot_analysis(a, &x);

@@ -65,6 +65,8 @@ static void write_survey_csv(FILE *stream, const void *found)
 {
     const linear_survey *y = &((const stability_survey *)found)->found;
     const sweep *s = &y->sweep;
+
+    // headings
     csv_writer w = csv_begin(stream);
     for (int axis = 0; axis < s->axis_count; axis++) {
         csv_heading(&w, s->axes[axis].name, sweep_axis_parameter(&s->axes[axis])->unit);
@@ -74,6 +76,7 @@ static void write_survey_csv(FILE *stream, const void *found)
     }
     csv_end_row(&w);
 
+    // a row for each combination
     for (size_t i = 0; i < y->done; i++) {
         for (int axis = 0; axis < s->axis_count; axis++) {
             csv_number(&w, sweep_value(s, i, axis));
@@ -106,6 +109,7 @@ static void print_survey(const void *found)
     printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n",
            count_stable(y, BY_POLES), y->done, count_stable(y, BY_RUNS));
 
+    // where stability changes
     for (int i = 0; i < y->limit_count; i++) {
         const sweep_axis *axis = &y->sweep.axes[0];
         const char *judged_by = "poles, without friction";
@@ -169,6 +173,8 @@ int survey_and_report(const arguments *a, const scenario *s, linear_place place,
     if (linear_survey_begin(&survey.found, s, &request, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
+    // each combination in its turn
     run_monitor *monitor =
         work_begin(a, "combinations", (int)survey.found.sweep.run_count);
     const status code = linear_survey_make(&survey.found, place, monitor, &f);

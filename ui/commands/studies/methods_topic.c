@@ -73,6 +73,8 @@ static void print_method(const method_study *study, int method)
 static void print_least_costs(const method_study *study)
 {
     enum { PEAK = 1 }; // among the quantities
+
+    // from 1e-2 N down to 1e-8 N
     printf("\nLeast cost for an error of the first pulse's peak of at most\n");
     for (double error = 1e-2; error > 0.9e-8; error /= 100) {
         printf("  %7.0e N:", error);
@@ -153,6 +155,7 @@ static int plot_methods(const arguments *a, const void *found)
     method_study drawn = result->study;
     raise_zeros(&drawn);
 
+    // the curves, by quantity and method
     figure_series series[STUDY_QUANTITIES][STUDY_METHODS];
     figure_panel panels[STUDY_QUANTITIES];
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
@@ -170,6 +173,7 @@ static int plot_methods(const arguments *a, const void *found)
                                    .weight = 1.8};
     }
 
+    // the panels side by side
     const figure fig = {
         .caption = "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to "
                    "right; the event method needs none of them and costs about the same "

@@ -54,6 +54,8 @@ static json_t *modes_json(const void *found)
     const arm_modes *m = found;
     const int dof = m->arm.dof;
     json_t *array = json_array();
+
+    // an entry for each way of holding the arm
     for (int i = 0; i < HOLDS; i++) {
         const mode_set *set = &m->sets[i];
         json_t *shapes = json_array(), *frequencies = json_array();
@@ -61,6 +63,7 @@ static json_t *modes_json(const void *found)
             json_add(shapes, json_numbers(set->shapes + mode * dof, dof));
             json_add(frequencies, json_number(1 / TWO_PI * set->frequencies[mode]));
         }
+
         json_add(array, json_of("hub:t tip:t frequency_Hz:o shapes:o", holds[i].hub_name,
                                 holds[i].tip_name, frequencies, shapes));
     }
@@ -148,6 +151,8 @@ static figure_panel modes_panel_of(modes_panel *p, const arm *a, const mode_set 
                                    double *numbers)
 {
     static const int colours[MODES_DRAWN] = {0, 5, 2};
+
+    // a curve for each of the first modes, labelled by its frequency
     const size_t points = (size_t)a->links + 1;
     int drawn = 0;
     for (; drawn < set->count && drawn < MODES_DRAWN; drawn++) {
@@ -165,6 +170,7 @@ static figure_panel modes_panel_of(modes_panel *p, const arm *a, const mode_set 
         }
     }
 
+    // the panel, with a remark where there is no curve
     figure_panel panel = {.heading = p->heading,
                           .y = {.name = "deflection",
                                 .label = "Deflection, largest 1",

@@ -68,6 +68,8 @@ typedef struct predicted_contact {
 static json_t *answer_json(const prediction_answer *answer)
 {
     const prediction *p = &answer->prediction;
+
+    // a predictor that has no answer says why
     const char *message;
     json_t *holds;
     if (prediction_known(answer)) {
@@ -77,6 +79,7 @@ static json_t *answer_json(const prediction_answer *answer)
         message = prediction_reason(answer);
         holds = json_null();
     }
+
     return json_of("method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
                    "equivalent_restitution:n inductance_changes_peak_N:n",
                    answer->name, message, holds, p->force, p->delay, p->impulse,
@@ -111,6 +114,7 @@ static void print_contact(const predicted_contact *p)
     say_title(p->scenario);
     printf("%s at %.6g s, predicted from the instant before it\n\n", contact, time);
 
+    // the motion just before it
     const sample *row = p->row;
     printf(
         "  last free row at %.6g s: hub, first and last link at %.5g, %.5g, %.5g rad,\n"
@@ -259,6 +263,7 @@ static int predict_and_report(const arguments *a, const scenario *s,
         return EXIT_BAD_ARGUMENTS;
     }
 
+    // from the last row before the contact
     predicted_contact p = {.scenario = s, .result = result};
     const voltage_profile profile = {then.count, then.times, then.volts};
     p.row = predict_first_contact(s, result, &profile, p.answers);
@@ -268,6 +273,8 @@ static int predict_and_report(const arguments *a, const scenario *s,
             s->name);
         return EXIT_FAILED;
     }
+
+    // what there was no memory for is no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         if (p.answers[i].fault.code == STATUS_NO_MEMORY) {
             return complain_fault(&p.answers[i].fault);
@@ -284,6 +291,7 @@ static int run_and_predict(const arguments *a, scenario *s)
 {
     run_result simulated;
     int result;
+
     switch (run_with_progress(a, s, true, &simulated)) {
     case STATUS_OK:
         result = predict_and_report(a, s, &simulated);

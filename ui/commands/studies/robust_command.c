@@ -2,6 +2,7 @@
 // states.
 #include "ui/commands/command.h"
 
+#include <assert.h>
 #include <glib.h>
 #include <stdio.h>
 #include <string.h>
@@ -95,6 +96,7 @@ static int read_law_list(robustness *r, const char *list)
         }
         r->laws[r->judged_laws++] = law;
 
+        // the next word, if there is one
         const char *comma = rest + length;
         rest = NULL;
         if (*comma == ',') {
@@ -116,6 +118,7 @@ static int read_laws(robustness *r)
         r->laws[r->judged_laws++] = r->scenario->parameters.control.law;
     }
 
+    // what cannot be run, or not be shown
     if (r->laws[0] == LAW_NONE) {
         return complain("%s has no control law, expected one or --laws",
                         r->scenario->name);
@@ -135,6 +138,7 @@ static int read_against(robustness *r)
     if (word == NULL) {
         return EXIT_DONE;
     }
+
     const int law = find_law(word, strlen(word));
     if (law == LAW_NONE) {
         return complain("--against %s: no control law, expected one of control.law",
@@ -146,6 +150,7 @@ static int read_against(robustness *r)
             word);
     }
 
+    // behind the laws that are judged, unless it is one of them
     r->against = r->judged_laws;
     r->laws[r->judged_laws] = law;
     for (int i = 0; i < r->judged_laws; i++) {
@@ -202,10 +207,13 @@ static int read_set(robustness *r)
     if (robust_set_read(&r->set, path, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
+    // cases are a table, no curves
     if (r->set.case_count > 0 && a->plot != NULL) {
         return complain("--plot shows laws, not the cases of %s", a->over);
     }
 
+    // how many runs, of which all draws must go together
     r->runs = (size_t)a->runs;
     if (r->runs == 0) {
         r->runs = r->set.case_count > 0 ? DEFAULT_CASE_RUNS : DEFAULT_RUNS;
@@ -214,6 +222,8 @@ static int read_set(robustness *r)
     if (ended != EXIT_DONE) {
         return ended;
     }
+
+    // room for all laws, and that of --against
     const int most_laws = r->judged_laws + 1;
     r->found = g_new0(robust_law, (size_t)count_cases(r) * (size_t)most_laws);
     return EXIT_DONE;
@@ -233,6 +243,7 @@ static bool any_law_has_parameter(const robustness *r, const char *name)
         laws[count++] = r->laws[i];
     }
 
+    // any of them that has it, or may have it
     for (int i = 0; i < count; i++) {
         const controller *law = controller_of(laws[i]);
         if (law == NULL || controller_find_parameter(law, name) >= 0) {
@@ -329,6 +340,7 @@ static char *database_of_law(const char *db, const char *law, int k)
 static status add_judgement(robustness *r, const char *law, int k, const sweep *s,
                             sweep_store *store, fault *f)
 {
+    assert(r->found_count < count_cases(r) * count_laws(r));
     robust_law *found = &r->found[r->found_count++];
     const status code = robust_law_of(found, law, s, (sweep_share){0}, store, f);
     found->case_title = NULL;
@@ -397,12 +409,15 @@ static int go_through_laws(robustness *r, int k, bool runs)
     if (k != NO_CASE) {
         c = &r->set.cases[k];
     }
+
+    // the scenario with the changes of the case
     SCOPED(robust_case_finish) scenario of_case;
     fault f = {0};
     if (robust_case_scenario(&of_case, r->scenario, c, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
 
+    // each law in it
     const bool quiet = !runs || r->arguments->quiet;
     for (int i = 0; i < count_laws(r); i++) {
         scenario under;
@@ -444,9 +459,13 @@ static int run_cases(robustness *r)
     }
 
     int result = EXIT_DONE;
+
+    // whether they can be run
     for (int k = first; k <= last; k++) {
         result = worse(result, go_through_laws(r, k, false));
     }
+
+    // the runs
     for (int k = first; k <= last && result == EXIT_DONE; k++) {
         result = go_through_laws(r, k, true);
         if (result == EXIT_DONE && r->against >= 0) {

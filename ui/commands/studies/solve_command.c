@@ -62,6 +62,7 @@ static void print_question(const question *q)
         relation[1] = '=';
     }
 
+    // its bound, and the range that was looked at
     char bound[NUMBER_TEXT], low[NUMBER_TEXT], high[NUMBER_TEXT];
     number_format_short(bound, c->bound);
     number_format_short(low, fmin(q->axis.low, q->axis.high));
@@ -84,6 +85,7 @@ static void print_limit(const question *q, const solve_limit *limit)
     g_autofree char *value_text = value_with_unit(value, unit);
     g_autofree char *reached_text = value_with_unit(reached, quantity->unit);
 
+    // the limit, and what is known of its surroundings
     say("\n  %s %s = %s, where the %s is %s", side, q->axis.name, value_text,
         quantity->label, reached_text);
     if (limit->jumps) {
@@ -117,6 +119,8 @@ static void print_solution(const void *found)
     const solution *s = &q->found;
     say_title(q->scenario);
     print_question(q);
+
+    // each limit, or that there is none
     for (int i = 0; i < s->count; i++) {
         print_limit(q, &s->limits[i]);
     }

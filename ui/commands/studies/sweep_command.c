@@ -54,6 +54,7 @@ static void print_counts(const sweep_order *o, size_t failed, const sweep_progre
         printf(", %zu were there already", p->done - p->done_now);
     }
 
+    // the quantity with its unit
     const summary_info *quantity = &summary_table[summary_index(o->quantity)];
     printf("\n%s", quantity->label);
     if (quantity->unit[0] != '\0') {
@@ -91,6 +92,7 @@ static void print_extreme(const sweep_order *o, const char *word, const double *
 // The smallest and the largest value of those that occurred.
 static void print_extremes(const sweep_order *o, const double *values)
 {
+    // runs in which the quantity did not occur have no value
     const size_t count = o->sweep->run_count, none = count;
     size_t smallest = none, largest = none;
     for (size_t run = 0; run < count; run++) {
@@ -228,6 +230,7 @@ static status plan_sweep(const arguments *a, const scenario *base, sweep *s, fau
     if (a->sampling != NULL) {
         sampling = a->sampling;
     }
+
     const sweep_request request = {.vary = a->varies.items,
                                    .vary_count = a->varies.count,
                                    .sampling =
@@ -235,6 +238,8 @@ static status plan_sweep(const arguments *a, const scenario *base, sweep *s, fau
                                    .runs = (size_t)a->runs,
                                    .seed = a->seed};
     TRY(sweep_init(s, base, &request, f));
+
+    // a parameter that no run takes is refused
     for (int i = 0; i < s->axis_count; i++) {
         TRY(sweep_check_effect(s, i, f));
     }
@@ -264,6 +269,7 @@ static int report_part(const sweep_order *o, const sweep_progress *p)
 // Returns the exit status.
 static int run_and_report_sweep(const sweep_order *o, sweep_store *store)
 {
+    // the runs
     fault f = {0};
     sweep_progress progress;
     sweep_options options = many_runs_begin(o->arguments, NULL);
@@ -274,6 +280,7 @@ static int run_and_report_sweep(const sweep_order *o, sweep_store *store)
         return complain_fault(&f);
     }
 
+    // results are those of the whole sweep, not of a part of it
     const bool is_part = o->share.parts > 0;
     const bool is_stopped = progress.done < progress.total;
     const char *what_became = "none is shown";
@@ -282,6 +289,8 @@ static int run_and_report_sweep(const sweep_order *o, sweep_store *store)
         result = report_sweep(o, store, &progress);
         what_became = "the results are those of these";
     }
+
+    // what has to be said of runs that are missing
     if (is_stopped) {
         return many_runs_stopped(o->arguments->db, progress.done, progress.total,
                                  what_became);
@@ -303,6 +312,7 @@ static int sweep_and_report(const arguments *a, scenario *base)
         return ended;
     }
 
+    // the sweep, and where its runs are kept
     SCOPED(sweep_finish) sweep s = {0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
     fault f = {0};

@@ -15,7 +15,10 @@ static json_t *tables_json(const void *found)
 {
     const thesis_tables *t = found;
     json_t *rows = json_array();
+
+    // a row for each table, model and quantity
     for (int i = 0; i < t->row_count; i++) {
+
         const table_row *row = &t->rows[i];
         json_t *line = json_of("table:t k2_factor:n model:t quantity:t", row->table,
                                row->k2_factor, row->model, row->quantity);
@@ -120,6 +123,8 @@ static void print_mean_errors(const thesis_tables *t)
 {
     const char *columns = is_fitted(t) ? "" : " (printed model, corrected model)";
     printf("\nMean error over the 12 cells of a row kind%s:\n", columns);
+
+    // quantities that these tables do not have are left out
     for (int i = 0; i < QUANTITIES; i++) {
         const char *key = quantities[i].key;
         const double error = 100 * tables_mean_error(t, t->rows[0].model, key);
@@ -171,6 +176,8 @@ static int compute_and_report_tables(const arguments *a)
     thesis_tables t;
     fault f = {0};
     status code = STATUS_OK;
+
+    // the tables, of which an interrupt leaves some cells empty
     interrupts_catch();
     if (a->fitted) {
         tables_compute_fitted(&t);
@@ -181,6 +188,7 @@ static int compute_and_report_tables(const arguments *a)
         return complain_fault(&f);
     }
 
+    // what there is
     int result = write_results(a, &results, &t, code == STATUS_OK);
     if (code == STATUS_STOPPED) {
         complain("stopped: the cells that were not computed are empty");

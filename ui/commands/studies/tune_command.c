@@ -66,6 +66,8 @@ static json_t *tuning_json(const void *found)
 {
     const tuner *t = found;
     const tuning *tuned = &t->tuning;
+
+    // over a set the laws are judged as robust judges them
     json_t *object, *numbers = json_array();
     if (tuned->asked.over != NULL) {
         robust_law laws[CHANGED];
@@ -74,6 +76,8 @@ static json_t *tuning_json(const void *found)
     } else {
         object = json_object();
     }
+
+    // each varied parameter
     for (int i = 0; i < tuned->asked.vary_count; i++) {
         const tune_result *changed = changed_rows(t, i);
         json_add(numbers, json_of("path:t given:n value:n tenth_lower:n tenth_higher:n",
@@ -107,6 +111,7 @@ static void print_tuning(const void *found)
     say("%s\n%.6g in %zu evaluations of %zu run%s\n\n", tuned->asked.minimise,
         tuned->best.value, tuned->done, tuned->each, plural_ending(tuned->each));
 
+    // what was found, and what a tenth more or less gives
     say("  %-34s%13s%13s%13s%13s\n", "", "given", "tuned", "-10 % gives", "+10 % gives");
     for (int i = 0; i < tuned->asked.vary_count; i++) {
         print_tuned_parameter(t, i);
@@ -116,6 +121,7 @@ static void print_tuning(const void *found)
     print_cell(12, "%.5g", t->rows[TUNED].value);
     say("\n");
 
+    // both as laws
     if (t->rows[TUNED].law.runs > 0) {
         robust_law laws[CHANGED];
         const robust_table table = table_of_laws(t, laws);
@@ -155,6 +161,7 @@ static int report_tuning(const tuner *t, bool whole)
         return result;
     }
 
+    // values that nobody may use are a failure
     const char *why = "can be judged: in each, runs fail or never settle";
     if (isfinite(tuned->best.value)) {
         why = "meets --subject";
@@ -213,8 +220,12 @@ static status judge_rows(tuner *t, const sweep_options *options, fault *f)
     const int rows = CHANGED + 2 * t->tuning.asked.vary_count;
     SCOPED(tune_finish) tuning unseen = {.done = 0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
+
+    // draws of their own, the same for every row
     TRY(tune_unseen(&unseen, &t->tuning, (size_t)rows, f));
     TRY(sweep_store_open(&store, NULL, &unseen.plan, f));
+
+    // row by row; what a parameter does not take leaves its row empty
     while (t->count < rows) {
         const int row = t->count++;
         double values[SWEEP_MOST_AXES];
@@ -292,6 +303,8 @@ static tune_request request_of_tuning(const arguments *a, const scenario *s,
                           .runs = TUNE_RUNS_ALONE,
                           .seed = a->seed,
                           .growth = linear_growth};
+
+    // over a set each evaluation is a batch of runs
     if (a->over != NULL) {
         asked.over = set;
         asked.runs = TUNE_RUNS;
@@ -307,12 +320,15 @@ static int tune_and_report(const arguments *a, scenario *s)
     if (a->varies.count == 0 || a->minimise == NULL) {
         return complain("tune: expected --vary PATH=a:b and --minimise EXPR");
     }
+
     SCOPED(robust_set_finish) robust_set set = {0};
     SCOPED(tuner_finish) tuner t = {.arguments = a, .scenario = s};
     fault f = {0};
     if (a->over != NULL && robust_set_read(&set, a->over, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
+    // the search
     const tune_request asked = request_of_tuning(a, s, &set);
     if (tune_init(&t.tuning, &asked, &f) != STATUS_OK) {
         return complain_fault(&f);
