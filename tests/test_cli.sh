@@ -337,12 +337,13 @@ expect 2 lab hit.yaml --quiet --script long.script
 says err "long.script:2: no command"
 
 # two results have two places, however these are written
+echo before >alone.json
 ln -s alone.json to-one
 for other in alone.json ./alone.json "$PWD/alone.json" to-one; do
     expect 2 run hit.yaml --json alone.json --csv "$other"
     says err "two results cannot both be written to $other"
 done
-[ ! -e alone.json ] || fail "two results in one place left a file"
+[ "$(cat alone.json)" = before ] || fail "two results in one place wrote a file"
 
 # nor a result and what stands beside a picture, nor that of two pictures
 for other in json latex; do
@@ -463,6 +464,22 @@ says out "/hybrid"
 [ "$(wc -l <cases.csv)" = 3 ] || fail "robust --csv has not a row for each case"
 expect 2 robust compare/observer --against hybrid
 expect 2 robust compare/observer --over two.set --against nonsense
+
+# an exam of cases that nobody chose: the same with any number of threads, beside rows of before
+examined=(robust compare/force-pd --draw 12 --seed 40 --force 1 --force 3)
+expect 0 "${examined[@]}" --json before.json --csv exam.csv
+expect 0 "${examined[@]}" --json again.json --jobs 1
+cmp before.json again.json || fail "robust --draw gives other bytes the second time"
+[ "$(wc -l <exam.csv)" = 25 ] || fail "robust --draw --csv has not a row for each run"
+expect 0 "${examined[@]}" --before before.json
+says out "+0.0 (+0.0 to +0.0)"
+expect 2 robust compare/force-pd --draw 12 --seed 41 --force 1 --before before.json
+says err "has 12 cases from seed 40, expected 12 from 41"
+expect 2 robust compare/force-pd --draw 12 --over two.set
+says err "--over does not go with --draw"
+expect 2 robust compare/force-pd --force 1
+expect 2 robust compare/hybrid-printed-arm --draw 12
+says err "cannot be drawn around compare/hybrid-printed-arm"
 "$lab" robust compare/twelve-links --runs 5000 --db long.sqlite --jobs 1 2>err &
 interrupted=$!
 until [ -s long-hybrid.sqlite ]; do sleep 0.05; done

@@ -190,7 +190,7 @@ static void print_shares(FILE *stream, const law_exam *e, int law)
 static void print_pairs(FILE *stream, const char *than, const case_marks *marks,
                         int force_count)
 {
-    fprintf(stream, "    than %-15.15s", than);
+    fprintf(stream, "    than %-13.13s", than);
     for (int k = 0; k < force_count; k++) {
         const exam_pairs p = pairs_of(&marks[k]);
         char text[32];
@@ -250,8 +250,8 @@ static void print_gains(FILE *stream, const law_exam *e, int law, const exam_row
 void law_exam_text(FILE *stream, const law_exam *e, const exam_rows *beside)
 {
     fprintf(stream,
-            "%s: %zu cases from seed %llu, in each two or three errors that no law is "
-            "told\n\n",
+            "%s: %zu cases from seed %llu, each with two or three errors of arm, wall, "
+            "sensors, computer or beliefs\n\n",
             e->asked.base->name, e->asked.cases, (unsigned long long)e->asked.seed);
     fprintf(stream,
             "cases within the bounds [%%], and the 95 %% interval of the share; "

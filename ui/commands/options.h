@@ -135,6 +135,9 @@ typedef struct arguments {
     const char *against, *columns;    // of compare
     double tolerance;                 // of compare [%]
     const char *laws, *over;          // of robust
+    uint64_t draw;                    // --draw, cases; 0 if not given
+    option_list forces;               // --force [N]
+    const char *before;               // --before, rows of an exam
     const char *minimise, *subject;   // of tune
     const char *then;                 // of predict, "TIME:VOLTS,..."
     const char *place;                // of linear, --at

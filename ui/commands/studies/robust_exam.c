@@ -1,0 +1,129 @@
+#include "ui/commands/studies/robust_exam.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/study/law_exam.h"
+#include "ui/commands/progress.h"
+#include "ui/commands/results.h"
+
+// What the writers of results get.
+typedef struct exam_found {
+    const law_exam *exam;
+    const exam_rows *before; // NULL: none were given
+} exam_found;
+
+static json_t *found_json(const void *found)
+{
+    const exam_found *e = found;
+    return law_exam_json(e->exam, e->before);
+}
+
+static void print_found(const void *found)
+{
+    const exam_found *e = found;
+    law_exam_text(stdout, e->exam, e->before);
+}
+
+static void write_cases(FILE *stream, const void *found)
+{
+    const exam_found *e = found;
+    law_exam_csv(stream, e->exam);
+}
+
+static void show_share_done(const law_exam *e)
+{
+    fprintf(stderr, "\r%zu of %zu runs ", e->done, e->runs);
+    fflush(stderr);
+}
+
+// What draws from a set has no use here.
+static int check_options(const arguments *a)
+{
+    const struct {
+        const char *name;
+        bool given;
+    } others[] = {
+        {"over", a->over != NULL},
+        {"against", a->against != NULL},
+        {"runs", a->runs > 0},
+        {"db", a->db != NULL},
+        {"markdown", a->markdown != NULL},
+        {"plot", a->plot != NULL},
+    };
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        if (others[i].given) {
+            return complain("--%s does not go with --draw, which judges cases of its own",
+                            others[i].name);
+        }
+    }
+    return EXIT_DONE;
+}
+
+// The commands of --force, or the scenario's own.
+static int read_forces(const arguments *a, const scenario *s, exam_request *asked)
+{
+    asked->force_count = a->forces.count;
+    if (asked->force_count > EXAM_MOST_FORCES) {
+        return complain("--force can be given %d times at most", EXAM_MOST_FORCES);
+    }
+    for (int k = 0; k < asked->force_count; k++) {
+        asked->forces[k] = a->forces.numbers[k];
+        if (!(asked->forces[k] > 0)) {
+            return complain("--force %g: expected a force above 0 N", asked->forces[k]);
+        }
+    }
+    if (asked->force_count == 0) {
+        asked->forces[asked->force_count++] = s->parameters.control.force;
+    }
+    if (!(asked->forces[0] > 0)) {
+        return complain("%s commands no force, expected one or --force", s->name);
+    }
+    return EXIT_DONE;
+}
+
+int robust_exam(const arguments *a, const scenario *s, const int *laws, int law_count)
+{
+    static const command_results written = {found_json, print_found, .csv = write_cases};
+    exam_request asked = {.base = s,
+                          .law_count = law_count,
+                          .cases = (size_t)a->draw,
+                          .seed = a->seed};
+    if (law_count > EXAM_MOST_LAWS) {
+        return complain("--laws: --draw judges at most %d laws", EXAM_MOST_LAWS);
+    }
+    memcpy(asked.laws, laws, (size_t)law_count * sizeof *laws);
+    int code = check_options(a);
+    if (code == EXIT_DONE) {
+        code = read_forces(a, s, &asked);
+    }
+    if (code != EXIT_DONE) {
+        return code;
+    }
+
+    // the runs
+    const sweep_options many = many_runs_begin(a, "");
+    const exam_options options = {.jobs = many.jobs,
+                                  .stop = many.stop,
+                                  .abandon = many.abandon,
+                                  .report = many.report != NULL ? show_share_done : NULL};
+    SCOPED(law_exam_finish) law_exam e;
+    fault f = {.path = ""};
+    const status ran = law_exam_run(&e, &asked, &options, &f);
+    many_runs_end(&many);
+    if (ran != STATUS_OK) {
+        return complain_fault(&f);
+    }
+
+    // beside those of before
+    SCOPED(exam_rows_finish) exam_rows before = {.path = a->before};
+    exam_found found = {.exam = &e, .before = NULL};
+    if (a->before != NULL) {
+        if (exam_rows_read(&before, a->before, &e, &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+        found.before = &before;
+    }
+    return write_results(a, &written, &found, true);
+}
