@@ -9,9 +9,11 @@
 
 enum {
     CLOSE_UP_FROM = 60, // width of the panel from which on there is a close-up [cells]
-    LEAST_FRAME =
-        3, // width and height from which on something is drawn in a frame [cells]
+    LEAST_FRAME = 3,    // width and height of a frame that has anything in it [cells]
 };
+
+// An angle beyond which the whole circle is drawn [rad].
+#define FAR_OUT 0.8
 
 // Where a plan of the arm is drawn: cells of the screen, as dots or as pixels.
 typedef struct stage {
@@ -20,9 +22,23 @@ typedef struct stage {
     plan_view view;   // in either
 } stage;
 
+// Widens an extent by what the arm sweeps over in one row.
+static void extent_add(arm_extent *extent, const double *angles, const double *lengths,
+                       int links)
+{
+    double y = 0;
+    for (int i = 0; i < links; i++) {
+        y += lengths[i] * sin(angles[i]);
+        extent->most_angle = fmax(extent->most_angle, fabs(angles[i]));
+        extent->lowest = fmin(extent->lowest, y);
+        extent->highest = fmax(extent->highest, y);
+    }
+}
+
 // What the arm sweeps over in the whole run, remembered in *known.
 static void find_extent(const explorer_model *model, arm_extent *known)
 {
+    enum { SAMPLES = 2000, SAMPLES_OF_GROWTH = 100 }; // rows, of all
     const session *s = &model->session;
     const trace *t = &s->run.trace;
     const arm_parameters *beam = &s->effective.parameters.arm;
@@ -37,28 +53,42 @@ static void find_extent(const explorer_model *model, arm_extent *known)
         return;
     }
 
-    // while a run grows, what was known is widened; when it is complete, all of it is
-    // looked at
-    const bool anew = !grows || known->rows == 0;
-    const bool goes_on = known->run == run && known->rows < t->row_count;
-    const size_t first = grows && goes_on ? known->rows : 0, samples = grows ? 100 : 2000;
-    double low = anew ? 0 : known->lowest, high = anew ? 0 : known->highest;
-    double most = anew ? 0 : known->most_angle;
+    // while a run grows, what was known is widened by what came; when it is complete, all
+    // of it is looked at
+    size_t first = 0, samples = SAMPLES;
+    if (grows) {
+        samples = SAMPLES_OF_GROWTH;
+        if (known->run == run && known->rows < t->row_count) {
+            first = known->rows;
+        }
+    } else {
+        known->lowest = known->highest = known->most_angle = 0;
+    }
+
     double lengths[PARAMETER_LINKS_MOST];
     parameters_link_lengths(beam, lengths);
-    size_t stride = (t->row_count - first) / samples + 1;
+    const size_t stride = (t->row_count - first) / samples + 1;
     for (size_t r = first; r < t->row_count; r += stride) {
-        const double *angles = t->angles + (r + 1) * (size_t)t->angle_count - beam->links;
-        double y = 0;
-        for (int i = 0; i < beam->links; i++) {
-            const double angle = angles[i];
-            y += lengths[i] * sin(angle);
-            most = fmax(most, fabs(angle));
-            low = fmin(low, y);
-            high = fmax(high, y);
+        // the beam's angles are the last of a row
+        const double *end_of_row = t->angles + (r + 1) * (size_t)t->angle_count;
+        extent_add(known, end_of_row - beam->links, lengths, beam->links);
+    }
+    known->run = run;
+    known->rows = t->row_count;
+    known->whole = !grows;
+}
+
+// The largest of some round factors that is not above a bound, at least 1.
+static double round_magnification(double most)
+{
+    static const double factors[] = {1.5, 2, 3, 4, 5, 10, 20};
+    double chosen = 1;
+    for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
+        if (factors[i] <= most) {
+            chosen = factors[i];
         }
     }
-    *known = (arm_extent){model->opened, run, t->row_count, !grows, low, high, most};
+    return chosen;
 }
 
 // What shows all that the arm sweeps over on a stage of this size [dots or pixels].
@@ -66,52 +96,48 @@ static plan_view whole_view(const explorer_model *model, const arm_extent *exten
                             double width, double height)
 {
     const parameters *p = &model->session.effective.parameters;
-    double length = p->arm.length;
+    const double length = p->arm.length;
     plan_view v = {.magnified = 1, .width = width, .height = height};
 
     // far out: the whole circle, undistorted
-    if (extent->most_angle > 0.8) {
+    if (extent->most_angle > FAR_OUT) {
         v.scale = fmin(width, height) / (2.3 * length);
         v.left = -0.5 * width / v.scale;
         v.bottom = -0.5 * height / v.scale;
         return v;
     }
 
-    // the width is the arm's; heights are magnified as far as there is room
+    // the wall belongs to it
     double low = extent->lowest, high = extent->highest;
     if (p->wall.kind != WALL_NONE) {
         low = fmin(low, length * sin(p->wall.angle));
         high = fmax(high, length * sin(p->wall.angle));
     }
+
+    // the width is the arm's; heights are magnified as far as there is room
     v.scale = width / (1.25 * length);
     v.left = -0.1 * length;
-    double room = height * 0.62 / fmax(v.scale * (high - low), 1e-9);
-    static const double factors[] = {1.5, 2, 3, 4, 5, 10, 20};
-    for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
-        if (factors[i] <= room) {
-            v.magnified = factors[i];
-        }
-    }
-    // the force's arrow comes from above, so leave more room there
-    double spare = height / (v.scale * v.magnified) - (high - low);
+    v.magnified = round_magnification(height * 0.62 / fmax(v.scale * (high - low), 1e-9));
+
+    // the force's arrow comes from above, so more of the room is left there
+    const double spare = height / (v.scale * v.magnified) - (high - low);
     v.bottom = low - 0.3 * spare;
     return v;
 }
 
 int arm_rows(const explorer_model *model, layout *lay, screen_size room)
 {
-    enum { LEAST = 14 };
+    enum { LEAST = 14, AROUND = 6 }; // rows of all, and around what the arm sweeps over
+    const arm_extent *extent = &lay->extent;
     find_extent(model, &lay->extent);
+    if (extent->most_angle > FAR_OUT) {
+        return room.height > LEAST ? room.height : LEAST;
+    }
 
     // what is drawn in true proportion takes its height, and the force an arrow
-    const plan_view v =
-        whole_view(model, &lay->extent, 2.0 * room.width, 4.0 * room.height);
-    const double spread = (lay->extent.highest - lay->extent.lowest) * v.scale / 4;
-    const int wanted = lay->extent.most_angle > 0.8 ? room.height : 6 + (int)spread;
-    if (wanted < LEAST) {
-        return LEAST;
-    }
-    return wanted;
+    const plan_view v = whole_view(model, extent, 2.0 * room.width, 4.0 * room.height);
+    const int spread = (int)((extent->highest - extent->lowest) * v.scale / 4);
+    return AROUND + spread > LEAST ? AROUND + spread : LEAST;
 }
 
 // The run that the arm is drawn beside, NULL if there is none of as many bodies.
@@ -134,71 +160,86 @@ static plane_vector tip_of(const explorer_model *model)
 
 // --- as dots ---------------------------------------------------------------------------
 
-// The links of a recorded row as a line of dots, or a line two dots thick.
-static void draw_links(const explorer_model *model, const explorer_view *view,
-                       const stage *g, const trace *t, double time, ink in, bool dotted)
+// A line from dot to dot, dotted or two dots thick.
+static void draw_link(const canvas *c, plane_vector from, plane_vector to, ink shade,
+                      bool dotted)
 {
-    const parameters *p = &model->session.effective.parameters;
-    vector joints[PARAMETER_LINKS_MOST + 1];
-    scene_joints(t, p, time, joints);
-    scene_exaggerate(joints, p->arm.links, view->looks.bending);
-
-    // one link after the other
-    for (int i = 0; i < p->arm.links; i++) {
-        const double x0 = plan_x(&g->view, joints[i].x),
-                     y0 = plan_y(&g->view, joints[i].y);
-        const double x1 = plan_x(&g->view, joints[i + 1].x),
-                     y1 = plan_y(&g->view, joints[i + 1].y);
-        for (int k = 0; dotted && k < 40; k++) {
-            const double share = k / 40.0;
-            canvas_dot(&g->canvas, lround(x0 + share * (x1 - x0)),
-                       lround(y0 + share * (y1 - y0)), in);
-        }
-        for (int thick = 0; !dotted && thick < 2; thick++) {
-            canvas_line(&g->canvas, x0, y0 + thick, x1, y1 + thick, in);
-        }
+    enum { DOTS = 40 };
+    if (!dotted) {
+        canvas_line(c, from.x, from.y, to.x, to.y, shade);
+        canvas_line(c, from.x, from.y + 1, to.x, to.y + 1, shade);
+        return;
+    }
+    for (int i = 0; i < DOTS; i++) {
+        const double share = (double)i / DOTS;
+        canvas_dot(c, lround(from.x + share * (to.x - from.x)),
+                   lround(from.y + share * (to.y - from.y)), shade);
     }
 }
 
-static void draw_hub(const stage *v, double angle)
+// The links of a run at an instant.
+static void draw_links(const explorer_model *model, const explorer_view *view,
+                       const stage *g, const trace *t, ink shade, bool dotted)
 {
-    const double radius = 5;
-    double x = plan_x(&v->view, 0), y = plan_y(&v->view, 0);
-    for (int i = 0; i < 48; i++) {
-        double turn = i * 6.283185307 / 48;
-        canvas_dot(&v->canvas, lround(x + radius * cos(turn)),
+    const parameters *p = &model->session.effective.parameters;
+    vector joints[PARAMETER_LINKS_MOST + 1];
+    scene_joints(t, p, model->session.now, joints);
+    scene_exaggerate(joints, p->arm.links, view->looks.bending);
+    for (int i = 0; i < p->arm.links; i++) {
+        const plane_vector from = {plan_x(&g->view, joints[i].x),
+                                   plan_y(&g->view, joints[i].y)};
+        const plane_vector to = {plan_x(&g->view, joints[i + 1].x),
+                                 plan_y(&g->view, joints[i + 1].y)};
+        draw_link(&g->canvas, from, to, shade, dotted);
+    }
+}
+
+// A circle with a hand at the hub's angle.
+static void draw_hub(const stage *g, double angle)
+{
+    enum { DOTS = 48 };
+    const double radius = 5, whole_turn = 6.283185307; // [dots], [rad]
+    const double x = plan_x(&g->view, 0), y = plan_y(&g->view, 0);
+    for (int i = 0; i < DOTS; i++) {
+        const double turn = i * whole_turn / DOTS;
+        canvas_dot(&g->canvas, lround(x + radius * cos(turn)),
                    lround(y + radius * sin(turn)), INK_HUB);
     }
-    canvas_line(&v->canvas, x, y, x + radius * cos(angle), y - radius * sin(angle),
+    canvas_line(&g->canvas, x, y, x + radius * cos(angle), y - radius * sin(angle),
                 INK_HUB);
 }
 
 // A line from place to place [m].
-static void draw_line(const stage *g, double x0, double y0, double x1, double y1, ink in)
+static void draw_line_between(const stage *g, plane_vector from, plane_vector to,
+                              ink shade)
 {
     const plan_view *v = &g->view;
-    canvas_line(&g->canvas, plan_x(v, x0), plan_y(v, y0), plan_x(v, x1), plan_y(v, y1),
-                in);
+    canvas_line(&g->canvas, plan_x(v, from.x), plan_y(v, from.y), plan_x(v, to.x),
+                plan_y(v, to.y), shade);
 }
 
 static void draw_wall(const stage *g, const parameters *p, const sample *at)
 {
     const canvas *c = &g->canvas;
     const vector shift = scene_wall_shift(p, at);
-    const double x = p->arm.length * cos(p->wall.angle),
-                 y = p->arm.length * sin(p->wall.angle);
-
-    // a plane: a stretch of the line that the arm lies along
-    if (p->wall.kind == WALL_PLANE) {
-        draw_line(g, 0.8 * x + shift.x, 0.8 * y + shift.y, 1.1 * x + shift.x,
-                  1.1 * y + shift.y, INK_WALL);
+    const double x = p->arm.length * cos(p->wall.angle);
+    const double y = p->arm.length * sin(p->wall.angle);
+    if (p->wall.kind == WALL_NONE) {
+        return;
     }
 
-    // where the tip meets a wall of any kind, and the cell beyond, which the arm cannot
+    // a plane: a part of the line that the arm lies along
+    if (p->wall.kind == WALL_PLANE) {
+        const plane_vector from = {0.8 * x + shift.x, 0.8 * y + shift.y};
+        const plane_vector to = {1.1 * x + shift.x, 1.1 * y + shift.y};
+        draw_line_between(g, from, to, INK_WALL);
+    }
+
+    // where the tip meets a wall of any kind, and the cells beyond, which the arm cannot
     // reach
     const int column = c->x + (int)(plan_x(&g->view, x + shift.x) / 2);
     const int row = c->y + (int)(plan_y(&g->view, y + shift.y) / 4);
-    if (p->wall.kind != WALL_NONE && row > c->y && row < c->y + c->height) {
+    if (row > c->y && row < c->y + c->height) {
         for (int i = 0; i < 3; i++) {
             screen_put(c->screen, column + i, row - 1, 0x2592, INK_WALL);
         }
@@ -208,21 +249,21 @@ static void draw_wall(const stage *g, const parameters *p, const sample *at)
 
 // An arrow that pushes on the arm at its tip, as long as the force is a share of the
 // run's peak.
-static void draw_force(const stage *v, plane_vector tip, double force, double peak)
+static void draw_force(const stage *g, plane_vector tip, double force, double peak)
 {
+    const canvas *c = &g->canvas;
     if (!(force > 0) || !(peak > 0)) {
         return;
     }
-    double x = plan_x(&v->view, tip.x), y = plan_y(&v->view, tip.y),
-           length = 1.2 * v->canvas.height * force / peak;
+    const double x = plan_x(&g->view, tip.x), y = plan_y(&g->view, tip.y);
+    const double length = 1.2 * c->height * force / peak;
 
     // shaft and head in one column of cells
-    const int across = (int)lround(x - 2) / 2, head = (int)(y / 4) - 1;
-    const int column = v->canvas.x + across, row = v->canvas.y + head;
-    canvas_line(&v->canvas, 2.0 * across, y - 8 - length, 2.0 * across, 4.0 * head - 1,
+    const int column = (int)lround(x - 2) / 2, head_row = (int)(y / 4) - 1;
+    canvas_line(c, 2.0 * column, y - 8 - length, 2.0 * column, 4.0 * head_row - 1,
                 INK_FORCE);
-    if (row > v->canvas.y) {
-        screen_put(v->canvas.screen, column, row, 0x25bc, INK_FORCE);
+    if (head_row > 0) {
+        screen_put(c->screen, c->x + column, c->y + head_row, 0x25bc, INK_FORCE);
     }
 }
 
@@ -232,17 +273,20 @@ static void draw_dots(const explorer_model *model, const explorer_view *view,
 {
     const session *e = &model->session;
     const sample *row = session_sample(e);
+    const plane_vector tip = tip_of(model);
     draw_wall(g, &e->effective.parameters, row);
     if (other_run(e) != NULL) {
-        draw_links(model, view, g, other_run(e), e->now, INK_OTHER, true);
+        draw_links(model, view, g, other_run(e), INK_OTHER, true);
     }
     draw_hub(g, row->hub_angle);
-    draw_links(model, view, g, &e->run.trace, e->now, INK_ARM, false);
-    const plane_vector tip = tip_of(model);
+    draw_links(model, view, g, &e->run.trace, INK_ARM, false);
     if (view->pull.held) {
-        draw_line(g, tip.x, tip.y, view->pull.x, view->pull.y, INK_FORCE);
+        const plane_vector hand = {view->pull.x, view->pull.y};
+        draw_line_between(g, tip, hand, INK_FORCE);
     }
-    draw_force(g, tip, row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
+    if (row->contact != 0) {
+        draw_force(g, tip, row->force, e->run.summary.peak_force_N);
+    }
 }
 
 // --- as pixels -------------------------------------------------------------------------
@@ -280,9 +324,13 @@ static void draw_pixels(const explorer_model *model, const explorer_view *view,
 static stage plan_stage(screen *s, area a)
 {
     stage g = {.canvas = {s, a.x + 1, a.y + 1, a.width - 2, a.height - 2}};
-    const picture_layer *pixels = s->pictures;
-    g.view.width = g.canvas.width * (pixels != NULL ? pixels->cell_width : 2.0);
-    g.view.height = g.canvas.height * (pixels != NULL ? pixels->cell_height : 4.0);
+    double cell_width = 2, cell_height = 4; // [dots]
+    if (s->pictures != NULL) {
+        cell_width = s->pictures->cell_width;
+        cell_height = s->pictures->cell_height;
+    }
+    g.view.width = g.canvas.width * cell_width;
+    g.view.height = g.canvas.height * cell_height;
     return g;
 }
 
@@ -308,60 +356,96 @@ static void draw_close_up(const explorer_model *model, const explorer_view *view
     g.view =
         plan_close_up(&model->session.effective.parameters, g.view.width, g.view.height);
     snprintf(title, sizeof title, "tip, %.3g mm", 1e3 * g.view.width / g.view.scale);
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+    area_frame(s, a, INK_FRAME, title);
     draw_stage(model, view, &g);
 }
 
-// Texts about the arm: the force next to the tip, and the state of the hub.
-static void draw_words(const explorer_model *model, const explorer_view *view,
-                       const stage *g, area a)
+// Draws the close-up into the last third of an area, if it is wanted and has room;
+// returns what it leaves.
+static area draw_wanted_close_up(const explorer_model *model, const explorer_view *view,
+                                 screen *s, area a)
+{
+    bool wanted = view->looks.close_up == CLOSE_UP_ON;
+    if (view->looks.close_up == CLOSE_UP_AUTO) {
+        wanted = s->pictures != NULL;
+    }
+    if (!wanted || a.width < CLOSE_UP_FROM ||
+        model->session.effective.parameters.wall.kind == WALL_NONE) {
+        return a;
+    }
+    const int width = a.width / 3;
+    a.width -= width;
+    draw_close_up(model, view, s, (area){a.x + a.width, a.y, width, a.height});
+    return a;
+}
+
+// The force to the left of the tip, where it touches.
+static void draw_force_in_words(const explorer_model *model, const stage *g)
 {
     const sample *row = session_sample(&model->session);
     const plane_vector tip = tip_of(model);
-    screen *s = g->canvas.screen;
-    const double across = g->view.width / g->canvas.width,
-                 down = g->view.height / g->canvas.height;
-    const int x = g->canvas.x + (int)(plan_x(&g->view, tip.x) / across);
-    const int y = g->canvas.y + (int)(plan_y(&g->view, tip.y) / down) - 2;
-    if (row->contact != 0 && row->force > 0 && y > a.y) {
-        screen_print(s, x - 11, y, 9, INK_FORCE, "%7.3f N", row->force);
-    }
-    if (model->session.effective.parameters.wall.kind != WALL_NONE &&
-        s->pictures == NULL && a.height >= 9 && a.width >= 40) {
-        screen_text(s, a.x + a.width - 18, a.y + a.height - 2, 17, INK_WALL,
-                    "\u25c6 contact point");
-    }
-    if (view->pull.held) {
-        screen_print(s, a.x + 14, a.y + a.height - 2, a.width - 34, INK_FORCE,
-                     "pulled with %.3g N", view->pull.force);
-    }
-    if (row->sticking != 0) {
-        screen_text(s, a.x + 2, a.y + a.height - 2, 12, INK_DIM, "hub sticks");
+    const canvas *c = &g->canvas;
+    const double cell_width = g->view.width / c->width;
+    const double cell_height = g->view.height / c->height;
+    const int column = (int)(plan_x(&g->view, tip.x) / cell_width) - 11;
+    const int line = (int)(plan_y(&g->view, tip.y) / cell_height) - 2;
+    if (row->contact != 0 && row->force > 0 && line >= 0) {
+        screen_print(c->screen, c->x + column, c->y + line, 9, INK_FORCE, "%7.3f N",
+                     row->force);
     }
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+// Texts about the arm: the force next to the tip; in the last row the state of the hub,
+// the hand that pulls, and what a sign means.
+static void draw_words(const explorer_model *model, const explorer_view *view,
+                       const stage *g, area a)
 {
-    const parameters *p = &model->session.effective.parameters;
-    char title[LINE_TEXT] = "arm";
-    find_extent(model, &lay->extent);
+    screen *s = g->canvas.screen;
+    const bool has_wall = model->session.effective.parameters.wall.kind != WALL_NONE;
+    const bool has_room = a.height >= 9 && a.width >= 40;
+    const int last_row = a.y + a.height - 2;
+    draw_force_in_words(model, g);
+    if (has_wall && has_room && s->pictures == NULL) {
+        screen_text(s, a.x + a.width - 18, last_row, 17, INK_WALL,
+                    "\u25c6 contact point");
+    }
+    if (view->pull.held) {
+        screen_print(s, a.x + 14, last_row, a.width - 34, INK_FORCE, "pulled with %.3g N",
+                     view->pull.force);
+    }
+    if (session_sample(&model->session)->sticking != 0) {
+        screen_text(s, a.x + 2, last_row, 12, INK_DIM, "hub sticks");
+    }
+}
 
-    // a frame without room for anything in it
+// Where the arm was drawn, for the mouse.
+static void add_stage(layout *lay, const stage *g)
+{
+    const canvas *c = &g->canvas;
+    const plan_view *v = &g->view;
+    const area place = {c->x, c->y, c->width, c->height};
+    lay->drawn.stage = (arm_stage){.x = c->x,
+                                   .y = c->y,
+                                   .width = c->width,
+                                   .height = c->height,
+                                   .left = v->left,
+                                   .bottom = v->bottom,
+                                   .across = v->scale * c->width / v->width,
+                                   .up = v->scale * v->magnified * c->height / v->height};
+    layout_add_hit(lay, (hit_area){PANEL_ARM, PART_BODY, 0, place});
+}
+
+static void draw_arm(const explorer_model *model, const explorer_view *view, layout *lay,
+                     screen *s, area a)
+{
+    find_extent(model, &lay->extent);
     if (a.width < LEAST_FRAME || a.height < LEAST_FRAME) {
         return;
     }
-
-    // the contact from near by takes a third
-    const bool wanted = view->looks.close_up == CLOSE_UP_ON ||
-                        (view->looks.close_up == CLOSE_UP_AUTO && s->pictures != NULL);
-    if (wanted && a.width >= CLOSE_UP_FROM && p->wall.kind != WALL_NONE) {
-        const int width = a.width / 3;
-        a.width -= width;
-        draw_close_up(model, view, s, (area){a.x + a.width, a.y, width, a.height});
-    }
+    a = draw_wanted_close_up(model, view, s, a);
 
     // the title says how it is drawn
+    char title[LINE_TEXT] = "arm";
     stage g = plan_stage(s, a);
     g.view = whole_view(model, &lay->extent, g.view.width, g.view.height);
     if (g.view.magnified != 1) {
@@ -370,42 +454,31 @@ static void draw(const explorer_model *model, const explorer_view *view, layout 
     if (view->looks.bending != 1) {
         text_add(title, sizeof title, ", bent %g times", view->looks.bending);
     }
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+    area_frame(s, a, INK_FRAME, title);
     draw_stage(model, view, &g);
     draw_words(model, view, &g, a);
-
-    // for the mouse
-    const canvas *c = &g.canvas;
-    lay->drawn.stage =
-        (arm_stage){.x = c->x,
-                    .y = c->y,
-                    .width = c->width,
-                    .height = c->height,
-                    .left = g.view.left,
-                    .bottom = g.view.bottom,
-                    .across = g.view.scale * c->width / g.view.width,
-                    .up = g.view.scale * g.view.magnified * c->height / g.view.height};
-    layout_add_hit(
-        lay, (hit_area){PANEL_ARM, PART_BODY, 0, {c->x, c->y, c->width, c->height}});
+    add_stage(lay, &g);
 }
 
 // --- the mouse -------------------------------------------------------------------------
 
 // A press near the tip takes hold of it.
-static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const panel_gesture *g)
+static bool point_at_arm(explorer_model *model, explorer_view *view,
+                         explorer_input *input, const panel_gesture *g)
 {
     enum { NEAR_ACROSS = 4, NEAR_DOWN = 2 }; // [cells]
-    int x, y;
     const arm_stage *drawn = &view->drawn.stage;
     const pointer_event e = g->event;
     if (drawn->width < 1 || drawn->height < 1 || pointer_wheel(e) != 0) {
         return false;
     }
+
+    // where the mouse is, and where the tip
+    int x, y;
     const plane_vector place = stage_place(drawn, e.x, e.y);
     stage_cell(drawn, tip_of(model), &x, &y);
-    const bool near = abs(x - e.x) <= NEAR_ACROSS && abs(y - e.y) <= NEAR_DOWN;
-    if (e.kind == POINTER_PRESS && near) {
+    const bool near_tip = abs(x - e.x) <= NEAR_ACROSS && abs(y - e.y) <= NEAR_DOWN;
+    if (e.kind == POINTER_PRESS && near_tip) {
         act_pull_tip(model, view, input, place);
     } else if (e.kind == POINTER_DRAG && view->pull.held) {
         act_move_pull(model, view, place);
@@ -415,4 +488,4 @@ static bool point(explorer_model *model, explorer_view *view, explorer_input *in
     return true;
 }
 
-const panel arm_panel = {.name = "arm", .draw = draw, .point = point};
+const panel arm_panel = {.name = "arm", .draw = draw_arm, .point = point_at_arm};

@@ -5,8 +5,9 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include <glib.h>
 
 #include "src/arm/modes.h"
 #include "src/base/text_stream.h"
@@ -29,8 +30,8 @@ static const char mouse[] =
     "wheel on it too. Click an event, a parameter or a scenario (once more opens it); "
     "drag a slider and let go. Shift-drag selects text in most terminals.";
 
-enum { WRAPPED = 24, MOST_LINES = 600 }; // of one text, of a page
-enum { TEXT_WIDTH = 84 };                // of a page of sentences [cells]
+enum { TEXT_LINES = 24, MOST_LINES = 600 }; // of one text, of a page
+enum { TEXT_WIDTH = 84 };                   // of a page of sentences [cells]
 
 // A page that is being written.
 typedef struct page {
@@ -47,24 +48,32 @@ static help_line *new_line(page *p)
     return line;
 }
 
-// A text in as many lines as it takes, from a column on; the first line may be begun
-// already.
+// Adds bytes to a line from a column on; an overlong line loses its end.
+static void add_to_line(help_line *line, int column, const text_line *part)
+{
+    enum { MOST_BYTES = LINE_TEXT / 2 };
+    const int used = (int)strlen(line->text);
+    if (used < MOST_BYTES) {
+        const int blanks = column > used ? column - used : 0;
+        const int bytes = part->bytes < MOST_BYTES ? part->bytes : MOST_BYTES;
+        text_add(line->text, sizeof line->text, "%*s%.*s", blanks, "", bytes,
+                 part->start);
+    }
+}
+
+// A text in as many lines as it takes, from a column on; its first line goes on in
+// `begun`, unless that is NULL.
 static void add_column(page *p, int column, const char *text, help_line *begun)
 {
-    text_line parts[WRAPPED];
-    int room = p->width - column;
-    int count = text_wrap(text, room < 1 ? 1 : room, parts, WRAPPED, NULL);
-
-    // the first part may go on in the begun line, the others have lines of their own
+    text_line parts[TEXT_LINES];
+    const int room = p->width - column;
+    const int count = text_wrap(text, room > 1 ? room : 1, parts, TEXT_LINES, NULL);
     for (int i = 0; i < count; i++) {
-        help_line *line = i == 0 && begun != NULL ? begun : new_line(p);
-        size_t used = strlen(line->text);
-        int blanks = column > (int)used ? column - (int)used : 0;
-        int bytes = parts[i].bytes < LINE_TEXT / 2 ? parts[i].bytes : LINE_TEXT / 2;
-        if (used < LINE_TEXT / 2) {
-            snprintf(line->text + used, LINE_TEXT - used, "%*s%.*s", blanks, "", bytes,
-                     parts[i].start);
+        help_line *line = begun;
+        if (i > 0 || begun == NULL) {
+            line = new_line(p);
         }
+        add_to_line(line, column, &parts[i]);
     }
 }
 
@@ -97,7 +106,11 @@ static void add_entry(page *p, const char *keys, const char *text)
     help_line *line = new_line(p);
     snprintf(line->text, sizeof line->text, "%s", keys);
     line->keys = (int)strlen(keys);
-    add_column(p, p->column, text, line->keys + 1 < p->column ? line : NULL);
+    if (line->keys + 1 < p->column) {
+        add_column(p, p->column, text, line);
+    } else {
+        add_column(p, p->column, text, NULL);
+    }
 }
 
 // What the commands do, in groups, with the keys that carry each out.
@@ -105,39 +118,45 @@ static void add_commands(page *p, const key_bindings *b)
 {
     // wide enough: keys, call and meaning are three columns; else the call goes before
     // the meaning
-    bool wide = p->width >= 96;
-
-    // a group's heading before its first command
+    const bool wide = p->width >= 96;
     for (int i = 0; i < explorer_command_count; i++) {
         const explorer_command *c = &explorer_command_table[i];
         char keys[64], call[64], text[LINE_TEXT];
+
+        // a group's heading before its first command
         if (c->group[0] != '\0') {
             add_heading(p, c->group);
         }
+        snprintf(call, sizeof call, ":%s", c->name);
+        if (c->argument[0] != '\0') {
+            text_add(call, sizeof call, " %s", c->argument);
+        }
+        if (wide) {
+            snprintf(text, sizeof text, "%-32s %s", call, c->help);
+        } else {
+            snprintf(text, sizeof text, "%s  %s", call, c->help);
+        }
         key_names_of(b, c->name, keys, sizeof keys);
-        snprintf(call, sizeof call, ":%s%s%s", c->name, c->argument[0] ? " " : "",
-                 c->argument);
-        snprintf(text, sizeof text, wide ? "%-32s %s" : "%s  %s", call, c->help);
         add_entry(p, keys, text);
     }
 }
 
+// What the keys of the user do now, and what they did before.
 static void add_user_keys(page *p, const key_bindings *b)
 {
+    if (b->count > 0) {
+        add_heading(p, "Keys of your own");
+    }
     for (int i = 0; i < b->count; i++) {
         const user_key *own = &b->own[i];
-        const char *before = key_built_in_line(own->key);
+        const char *built_in = key_built_in_line(own->key);
+        const char *line = own->line[0] != '\0' ? own->line : "nothing";
         char key[KEY_NAME], text[2 * LINE_TEXT + 32];
-
-        // no heading without a key below it
-        if (i == 0) {
-            add_heading(p, "Keys of your own");
+        snprintf(text, sizeof text, "%s", line);
+        if (built_in != NULL) {
+            text_add(text, sizeof text, " (the lab's: %s)", built_in);
         }
-
-        // what the key does now, and what it did before
         key_name(own->key, key, sizeof key);
-        snprintf(text, sizeof text, "%s%s%s%s", own->line[0] ? own->line : "nothing",
-                 before ? " (the lab's: " : "", before ? before : "", before ? ")" : "");
         add_entry(p, key, text);
     }
 }
@@ -145,13 +164,11 @@ static void add_user_keys(page *p, const key_bindings *b)
 int help_write(const key_bindings *b, int width, help_line *lines, int most)
 {
     assert(most > 0);
-    page p = {.lines = lines, .most = most, .width = width};
+    page p = {.lines = lines, .most = most, .width = width, .column = 12};
     if (width >= 96) {
         p.column = 26;
     } else if (width >= 60) {
         p.column = 20;
-    } else {
-        p.column = 12;
     }
     add_text(&p, "%s", first_visit);
     new_line(&p);
@@ -170,18 +187,20 @@ static int keep_matching(help_line *lines, int count, const char *filter)
 {
     int kept = 0;
     for (int i = 0; i < count; i++) {
-        lines[kept] = lines[i];
-        kept += lines[i].text[0] != '\0' && filter_passes(filter, lines[i].text);
+        if (lines[i].text[0] != '\0' && filter_passes(filter, lines[i].text)) {
+            lines[kept++] = lines[i];
+        }
     }
     return kept;
 }
 
 void draw_page_frame(screen *s, area a, const char *title, int last, int count)
 {
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
-    if (last < count || count > a.height - 2) {
-        screen_print(s, a.x + 2, a.y + a.height - 1, a.width - 4, INK_DIM,
-                     " %d of %d lines ", last, count);
+    const area inside = area_inside(a);
+    area_frame(s, a, INK_CURSOR, title);
+    if (last < count || count > inside.height) {
+        area_print(s, area_row(inside, inside.height), INK_DIM, " %d of %d lines ", last,
+                   count);
     }
 }
 
@@ -199,14 +218,23 @@ static area draw_page(const explorer_view *view, layout *lay, screen *s, area bo
                       const page *p, const char *title, int below)
 {
     const area a = page_area(body, p->width + 4, p->count + 2 + below);
+    const area inside = area_inside(a);
     const int scroll = page_scroll(lay, view->page, a, p->count, 2);
-    const int left = p->count - scroll, rows = left < a.height - 2 ? left : a.height - 2;
+    int rows = p->count - scroll;
+    if (rows > inside.height) {
+        rows = inside.height;
+    }
     draw_page_frame(s, a, title, scroll + rows, p->count);
+
+    // headings and keys in their colours
     for (int i = 0; i < rows; i++) {
         const help_line *line = &p->lines[scroll + i];
-        const int x = a.x + 2, y = a.y + 1 + i, room = a.width - 4;
-        screen_text(s, x, y, room, line->heading ? INK_EVENT : INK_TEXT, line->text);
-        screen_tint(s, x, y, line->keys < room ? line->keys : room, 1, INK_TITLE);
+        area row = area_row(inside, i);
+        area_text(s, row, line->heading ? INK_EVENT : INK_TEXT, line->text);
+        if (line->keys < row.width) {
+            row.width = line->keys;
+        }
+        area_tint(s, row, INK_TITLE);
     }
     return a;
 }
@@ -230,43 +258,58 @@ const panel help_panel = {.name = "help", .draw = draw_help, .key = page_key};
 
 // --- the scenario ----------------------------------------------------------------------
 
-// The title, the description and the script.
+// What an action of a script does, with its instant.
+static void add_action(page *p, const action *a)
+{
+    char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH];
+    char *line = new_line(p)->text;
+    if (a->kind == ACTION_PUSH) {
+        snprintf(line, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
+        return;
+    }
+    action_format_value(a, value, sizeof value);
+    snprintf(line, LINE_TEXT, "%9.5f s  %s = %s", a->time, action_path(a, path), value);
+}
+
+static bool ends_with_blank(const page *p)
+{
+    return p->count > 0 && p->lines[p->count - 1].text[0] == '\0';
+}
+
+// The title, the description and the script, a blank line between them.
 static void draw_info(const explorer_model *model, const explorer_view *view, layout *lay,
                       screen *s, area body)
 {
     page p = begin_page(body, TEXT_WIDTH);
-    char title[LINE_TEXT];
     const scenario *base = &model->session.base;
-    add_column(&p, 0, base->title != NULL ? base->title : "", NULL);
+    if (base->title != NULL) {
+        add_column(&p, 0, base->title, NULL);
+    }
     p.lines[0].keys = text_cells(p.lines[0].text); // in their colour
     if (p.count > 0) {
         new_line(&p);
     }
-    add_column(&p, 0, base->description != NULL ? base->description : "", NULL);
-    if (p.count > 0 && p.lines[p.count - 1].text[0] != '\0') {
+    if (base->description != NULL) {
+        add_column(&p, 0, base->description, NULL);
+    }
+    if (p.count > 0 && !ends_with_blank(&p)) {
         new_line(&p);
     }
-
-    // what its script does
     for (int i = 0; i < base->action_count; i++) {
-        const action *a = &base->actions[i];
-        char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH], *line = new_line(&p)->text;
-        if (a->kind == ACTION_PUSH) {
-            snprintf(line, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
-        } else {
-            action_format_value(a, value, sizeof value);
-            snprintf(line, LINE_TEXT, "%9.5f s  %s = %s", a->time, action_path(a, path),
-                     value);
-        }
+        add_action(&p, &base->actions[i]);
     }
-    p.count -= p.count > 0 && p.lines[p.count - 1].text[0] == '\0';
+    if (ends_with_blank(&p)) {
+        p.count--;
+    }
+
+    char title[LINE_TEXT];
     snprintf(title, sizeof title, "%.180s (Esc closes)", base->name);
     draw_page(view, lay, s, body, &p, title, 0);
 }
 
 const panel info_panel = {.name = "info", .draw = draw_info, .key = page_key};
 
-// --- what one stands on ----------------------------------------------------------------
+// --- what is selected ------------------------------------------------------------------
 
 // The selected parameter: what it is, in which range, why it has no effect.
 static void explain_parameter(const explorer_model *model, const explorer_view *view,
@@ -304,26 +347,38 @@ static void explain_predictors(page *p)
         p, "\"would not hold\": the touch would throw the tip off. What came: the run.");
 }
 
+// The signals of the pane in focus, their symbols spelled out.
+static void explain_signals(const explorer_view *view, page *p)
+{
+    const int focused = panes_focused(&view->panes);
+    if (focused < 0 || view->panes.pane[focused].count == 0) {
+        return;
+    }
+    const pane *in_focus = &view->panes.pane[focused];
+    add_heading(p, "signals of the pane in focus (w: next pane)");
+    for (int k = 0; k < in_focus->count; k++) {
+        const signal_info *info = &signal_table[in_focus->signals[k]];
+        const char *in = info->unit[0] != '\0' ? ", in " : "";
+        add_text(p, "%s (%s%s%s): %s.", info->name, info->ascii, in, info->unit,
+                 info->description);
+    }
+}
+
+static void explain_event(const event *e, page *p)
+{
+    add_heading(p, "the event at the cursor");
+    add_text(p, "%s: %s.", event_name(e->kind), event_description((int)e->kind));
+}
+
 static void draw_explain(const explorer_model *model, const explorer_view *view,
                          layout *lay, screen *s, area body)
 {
     page p = begin_page(body, TEXT_WIDTH);
-    const int focused = panes_focused(&view->panes);
-    const event *e = session_event(&model->session);
+    const event *at_cursor = session_event(&model->session);
     explain_parameter(model, view, &p);
-
-    // the signals in focus, their symbols spelled out, then the event at the cursor
-    for (int k = 0; focused >= 0 && k < view->panes.pane[focused].count; k++) {
-        const signal_info *info = &signal_table[view->panes.pane[focused].signals[k]];
-        if (k == 0) {
-            add_heading(&p, "signals of the pane in focus (w: next pane)");
-        }
-        add_text(&p, "%s (%s%s%s): %s.", info->name, info->ascii,
-                 info->unit[0] ? ", in " : "", info->unit, info->description);
-    }
-    if (e != NULL) {
-        add_heading(&p, "the event at the cursor");
-        add_text(&p, "%s: %s.", event_name(e->kind), event_description((int)e->kind));
+    explain_signals(view, &p);
+    if (at_cursor != NULL) {
+        explain_event(at_cursor, &p);
     }
     explain_predictors(&p);
     draw_page(view, lay, s, body, &p,
@@ -332,7 +387,9 @@ static void draw_explain(const explorer_model *model, const explorer_view *view,
 
 const panel explain_panel = {.name = "explain", .draw = draw_explain, .key = page_key};
 
-// The page of a first visit: what is behind it goes on, the first key closes it and acts.
+// --- a first visit ---------------------------------------------------------------------
+
+// What is behind it goes on, the first key closes it and acts.
 static void draw_welcome(const explorer_model *model, const explorer_view *view,
                          layout *lay, screen *s, area body)
 {
@@ -370,6 +427,20 @@ const panel why_panel = {.name = "why", .draw = draw_why, .key = page_key};
 
 // --- the poles -------------------------------------------------------------------------
 
+// A pole as frequency [Hz], damping and decay [s]; one at the origin has only the first.
+static void add_pole(page *p, double complex pole)
+{
+    double frequency = 0, damping = (double)NAN, decay = (double)NAN;
+    const bool at_origin = cabs(pole) < 1e-6; // but for rounding
+    if (!at_origin) {
+        frequency = cabs(pole) / (2 * acos(-1));
+        damping = linear_damping(pole);
+        decay = -1 / creal(pole);
+    }
+    snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s", draw_number(frequency).text,
+             draw_number(damping).text, draw_number(decay).text);
+}
+
 // The poles of the arm near rest in one place, of a pair the upper one, or why there are
 // none.
 static void add_poles(page *p, const parameters *values, linear_place place)
@@ -378,111 +449,118 @@ static void add_poles(page *p, const parameters *values, linear_place place)
                                         "pressing on the wall, hub held by friction"};
     fault f = {0};
     linear_arm of;
-    double complex *poles = NULL;
+    g_autofree double complex *poles = NULL;
+    int count = 0;
     add_heading(p, names[place]);
     status code = linear_arm_init(&of, values, place, &f);
-    const int count = code == STATUS_OK ? of.system.states : 0;
     if (code == STATUS_OK) {
-        poles = calloc((size_t)count + 1, sizeof *poles);
-        if (poles != NULL) {
-            code = linear_poles(&of.system, poles, &f);
-        } else {
-            code = fault_no_memory(&f);
-        }
+        count = of.system.states;
+        poles = g_new0(double complex, (size_t)count + 1);
+        code = linear_poles(&of.system, poles, &f);
     }
-    loss_unless(code != STATUS_NO_MEMORY);
+    linear_system_finish(&of.system);
+
     if (code != STATUS_OK) {
+        loss_unless(code != STATUS_NO_MEMORY);
         add_text(p, "%s", f.text);
-    } else if (count == 0) {
+        return;
+    }
+    if (count == 0) {
         add_text(p, "none: nothing is left that could move");
     }
-    for (int i = 0; code == STATUS_OK && i < count; i++) {
-        const double complex s = poles[i];
-        const bool rests = cabs(s) < 1e-6; // rounding of a pole at the origin
-        double frequency = 0, damping = (double)NAN, decay = (double)NAN; // [Hz], [], [s]
-        if (!rests) {
-            frequency = cabs(s) / (2 * acos(-1));
-            damping = linear_damping(s);
-            decay = -1 / creal(s);
-        }
-        if (cimag(s) >= 0) {
-            snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s",
-                     draw_number(frequency).text, draw_number(damping).text,
-                     draw_number(decay).text);
+    for (int i = 0; i < count; i++) {
+        if (cimag(poles[i]) >= 0) {
+            add_pole(p, poles[i]);
         }
     }
-    free(poles);
-    linear_system_finish(&of.system);
 }
 
-enum { SHAPES = 4, SHAPE_ROWS = 5, MOST_SHAPED = 64 };
+enum { SHAPES = 4, SHAPE_ROWS = 5, MOST_SHAPED_LINKS = 64 };
 
-// The lowest modes of the arm that nothing holds, hub to the left, one beside the other.
+// The shape of a mode, from the angles of its links, hub to the left; its largest
+// deflection fills the canvas.
+static void draw_shape(const canvas *c, const arm_parameters *beam, const double *lengths,
+                       const double *angles)
+{
+    double deflection[PARAMETER_LINKS_MOST + 1] = {0}, largest = 0;
+    for (int k = 0; k < beam->links; k++) {
+        deflection[k + 1] = deflection[k] + lengths[k] * angles[k];
+        largest = fmax(largest, fabs(deflection[k + 1]));
+    }
+    if (!(largest > 0)) {
+        return;
+    }
+    const double middle = 2.0 * c->height - 0.5; // [dots]
+    double x = 0;
+    for (int k = 0; k < beam->links; k++) {
+        const double end = x + lengths[k] / beam->length * (2.0 * c->width - 1);
+        canvas_line(c, x, middle * (1 - deflection[k] / largest), end,
+                    middle * (1 - deflection[k + 1] / largest), INK_ARM);
+        x = end;
+    }
+}
+
+// The lowest modes of the arm that nothing holds, one beside the other.
 static void draw_shapes(screen *s, area a, const parameters *values)
 {
     arm m;
     int count = 0;
-    double lengths[PARAMETER_LINKS_MOST];
     arm_init(&m, values);
-    double *w = calloc((size_t)m.dof, sizeof *w);
-    double *shapes = calloc((size_t)m.dof * (size_t)m.dof, sizeof *shapes);
-    loss_unless(w != NULL && shapes != NULL);
-    const int links = values->arm.links, wide = a.width / SHAPES - 1;
+    const size_t dof = (size_t)m.dof;
+    g_autofree double *frequencies = g_new0(double, dof); // [rad/s]
+    g_autofree double *shapes = g_new0(double, dof *dof);
+    if (modes_compute(&m, HUB_FREE, TIP_FREE, &count, frequencies, shapes) != STATUS_OK) {
+        return;
+    }
+
+    // the links are the last coordinates of a shape
+    const int width = a.width / SHAPES - 1;
+    double lengths[PARAMETER_LINKS_MOST];
     parameters_link_lengths(&values->arm, lengths);
-    if (w == NULL || shapes == NULL ||
-        modes_compute(&m, HUB_FREE, TIP_FREE, &count, w, shapes) != STATUS_OK) {
-        count = 0;
+    for (int i = 0; i < count && i < SHAPES; i++) {
+        const double *angles = shapes + (i + 1) * m.dof - values->arm.links;
+        const canvas c = {s, a.x + i * (width + 1), a.y + 1, width, a.height - 1};
+        draw_shape(&c, &values->arm, lengths, angles);
+        screen_print(s, c.x, a.y, width, INK_DIM, "free, %.3g Hz",
+                     frequencies[i] / (2 * acos(-1)));
     }
-    for (int i = 0, n = 0; i < count && n < SHAPES; i++) {
-        const double *angle = shapes + i * m.dof + m.dof - links;
-        double at[PARAMETER_LINKS_MOST + 1] = {0}, most = 0;
-        for (int k = 0; k < links; k++) {
-            at[k + 1] = at[k] + lengths[k] * angle[k];
-            most = fmax(most, fabs(at[k + 1]));
-        }
-        const canvas c = {s, a.x + n * (wide + 1), a.y + 1, wide, a.height - 1};
-        double x = 0, middle = 2.0 * c.height - 0.5;
-        for (int k = 0; k < links && most > 0; k++) {
-            const double end = x + lengths[k] / values->arm.length * (2.0 * wide - 1);
-            canvas_line(&c, x, middle * (1 - at[k] / most), end,
-                        middle * (1 - at[k + 1] / most), INK_ARM);
-            x = end;
-        }
-        screen_print(s, c.x, a.y, wide, INK_DIM, "free, %.3g Hz", w[i] / (2 * acos(-1)));
-        n++;
+}
+
+static void write_poles(page *p, const parameters *values)
+{
+    add_text(p, "The arm near rest with the values at the cursor, without its law.");
+    snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s", "[Hz]", "damping",
+             "decay [s]");
+    for (linear_place place = LINEAR_FREE; place <= LINEAR_STUCK; place++) {
+        add_poles(p, values, place);
     }
-    free(w);
-    free(shapes);
 }
 
 static void draw_poles(const explorer_model *model, const explorer_view *view,
                        layout *lay, screen *s, area body)
 {
     static help_line lines[MOST_LINES];
-    static parameters shown;
+    static parameters written; // the values that the page is of
     static page p;
     const parameters now = model_parameters(model);
     const int width = begin_page(body, 64).width;
 
-    // computed anew where a parameter has changed: many links take a while
-    if (p.width != width || memcmp(&shown, &now, sizeof now) != 0) {
-        memcpy(&shown, &now, sizeof now);
+    // computed again where a parameter has changed: many links take a while
+    if (p.width != width || memcmp(&written, &now, sizeof now) != 0) {
+        memcpy(&written, &now, sizeof now);
         p = (page){.lines = lines, .most = MOST_LINES, .width = width};
-        add_text(&p, "The arm near rest with the values at the cursor, without its law.");
-        snprintf(new_line(&p)->text, LINE_TEXT, "%12s%12s%12s", "[Hz]", "damping",
-                 "decay [s]");
-        for (linear_place place = LINEAR_FREE; place <= LINEAR_STUCK; place++) {
-            add_poles(&p, &now, place);
-        }
+        write_poles(&p, &now);
     }
-    const bool shows =
-        p.count + 2 + SHAPE_ROWS <= body.height && now.arm.links <= MOST_SHAPED;
-    const int below = shows ? SHAPE_ROWS : 0;
-    const area a = draw_page(view, lay, s, body, &p, "poles (Esc closes)", below);
-    if (shows) {
-        draw_shapes(s, (area){a.x + 2, a.y + a.height - 1 - below, a.width - 4, below},
-                    &now);
+
+    // the shapes below, where they have room
+    const bool has_room = p.count + 2 + SHAPE_ROWS <= body.height;
+    if (!has_room || now.arm.links > MOST_SHAPED_LINKS) {
+        draw_page(view, lay, s, body, &p, "poles (Esc closes)", 0);
+        return;
     }
+    const area a = draw_page(view, lay, s, body, &p, "poles (Esc closes)", SHAPE_ROWS);
+    const area inside = area_inside(a);
+    draw_shapes(s, area_below(inside, inside.height - SHAPE_ROWS), &now);
 }
 
 const panel poles_panel = {.name = "poles", .draw = draw_poles, .key = page_key};

@@ -6,7 +6,8 @@
 
 #include "src/base/fourier.h"
 
-enum { SERIES = 1024 }; // number of values of a spectrum
+enum { SERIES = 1024 };               // values of which a spectrum is computed
+enum { SPECTRUM_LINES = SERIES / 2 }; // of a spectrum
 
 // A plane of two ranges on a canvas.
 typedef struct plane {
@@ -95,99 +96,116 @@ static bool draw_phase(const explorer_model *model, const explorer_view *view, s
 
 // --- a spectrum ------------------------------------------------------------------------
 
+// The value of a signal at an instant from row r on, a share of the way to the next row
+// if there is one.
+static double value_between(const trace *t, int signal, size_t r, double time)
+{
+    const double value = signal_value(&t->rows[r], signal);
+    if (r + 1 >= t->row_count || t->rows[r + 1].time <= t->rows[r].time) {
+        return value;
+    }
+    const double share =
+        (time - t->rows[r].time) / (t->rows[r + 1].time - t->rows[r].time);
+    return value + share * (signal_value(&t->rows[r + 1], signal) - value);
+}
+
 // A signal at even instants, straight between rows; what has no value counts as 0.
 static void sample_evenly(const trace *t, int signal, double from, double to,
                           double *series)
 {
-    // both go forward, so the row is found in one walk
+    // instants and rows go forward together, so the row is found in one walk
     size_t r = trace_row_at(t, from);
     for (int i = 0; i < SERIES; i++) {
         const double time = from + (to - from) * i / SERIES;
         while (r + 1 < t->row_count && t->rows[r + 1].time <= time) {
             r++;
         }
-
-        // a share of the way to the next row, if there is one
-        double value = signal_value(&t->rows[r], signal);
-        if (r + 1 < t->row_count && t->rows[r + 1].time > t->rows[r].time) {
-            const double share =
-                (time - t->rows[r].time) / (t->rows[r + 1].time - t->rows[r].time);
-            value += share * (signal_value(&t->rows[r + 1], signal) - value);
-        }
-        if (isfinite(value)) {
-            series[i] = value;
-        } else {
-            series[i] = 0;
-        }
+        const double value = value_between(t, signal, r, time);
+        series[i] = isfinite(value) ? value : 0;
     }
 }
 
-// The number of lines that hold nearly all of what there is. Line 0 is what the window
-// makes of a mean that was taken off, and not of the signal.
+// The number of lines that hold nearly all of what there is, and a few more. Line 0 is
+// what the window makes of a mean that was taken off, and not of the signal.
 static int lines_that_matter(const double *amplitude)
 {
     double all = 0, sum = 0;
-    int lines = 1;
-    for (int k = 1; k < SERIES / 2; k++) {
+    for (int k = 1; k < SPECTRUM_LINES; k++) {
         all += amplitude[k] * amplitude[k];
     }
-    for (; lines < SERIES / 2 && sum < 0.99 * all; lines++) {
+    int lines = 1;
+    while (lines < SPECTRUM_LINES && sum < 0.99 * all) {
         sum += amplitude[lines] * amplitude[lines];
+        lines++;
     }
     lines += lines / 4 + 8;
-    if (lines < SERIES / 2) {
-        return lines;
-    }
-    return SERIES / 2;
+    return lines < SPECTRUM_LINES ? lines : SPECTRUM_LINES;
 }
 
 // Below this share of a signal's largest value, the amplitudes of its spectrum are
 // rounding.
 #define ROUNDING 1e-12
 
+static double largest_size(const double *series, int count)
+{
+    double largest = 0;
+    for (int i = 0; i < count; i++) {
+        largest = fmax(largest, fabs(series[i]));
+    }
+    return largest;
+}
+
+// The line with the highest amplitude, 0 if all are 0.
+static int highest_line(const double *amplitude, int lines)
+{
+    int highest = 0;
+    double height = 0;
+    for (int k = 1; k < lines; k++) {
+        if (amplitude[k] > height) {
+            height = amplitude[k];
+            highest = k;
+        }
+    }
+    return highest;
+}
+
 // The amplitudes of the visible part, as far as it has been seen, up to where there is
 // anything.
 static bool draw_spectrum(const explorer_model *model, const explorer_view *view,
                           screen *s, const pane *of, area a, value_range *axis)
 {
-    static double series[SERIES], scratch[2 * SERIES], amplitude[SERIES / 2];
+    static double series[SERIES], scratch[2 * SERIES], amplitude[SPECTRUM_LINES];
     const trace *t = model_run(model, 0).trace;
-    char name[64];
-    double from, to, highest = 0, largest = 0;
-    int peak = 0;
+    double from, to;
     view_window(model, view, &from, &to);
     to = fmin(to, model->session.seen);
     if (!(to > from)) {
         return false;
     }
     sample_evenly(t, of->signals[0], from, to, series);
-    for (int i = 0; i < SERIES; i++) {
-        largest = fmax(largest, fabs(series[i]));
-    }
     fourier_amplitudes(series, SERIES, scratch, amplitude);
-    const int lines = lines_that_matter(amplitude);
-    for (int k = 1; k < lines; k++) {
-        if (amplitude[k] > highest) {
-            peak = k;
-        }
-        highest = fmax(highest, amplitude[k]);
-    }
 
     // the highest line is named, if there is any
-    const bool constant = highest <= ROUNDING * largest;
-    const plane p = {{s, a.x, a.y, a.width, a.height},
-                     {0, lines / (to - from)},
-                     value_range_opened((value_range){0, constant ? 0 : highest})};
+    const int lines = lines_that_matter(amplitude), peak = highest_line(amplitude, lines);
+    const double highest = peak > 0 ? amplitude[peak] : 0;
+    const bool constant = highest <= ROUNDING * largest_size(series, SERIES);
+    plane p = {.canvas = {s, a.x, a.y, a.width, a.height},
+               .x = {0, lines / (to - from)},
+               .y = {0, constant ? 0 : highest}};
+    p.y = value_range_opened(p.y);
     *axis = p.y;
-    snprintf(name, sizeof name, "constant, to [Hz]");
-    if (!constant) {
-        snprintf(name, sizeof name, "highest at %.3g Hz, to [Hz]", peak / (to - from));
+    if (constant) {
+        draw_ends(s, a, p.x, "constant, to [Hz]");
+        return true;
     }
-    for (int k = 2; k < lines && !constant; k++) {
+
+    for (int k = 2; k < lines; k++) {
         canvas_line(&p.canvas, dot_x(&p, (k - 1) / (to - from)),
                     dot_y(&p, amplitude[k - 1]), dot_x(&p, k / (to - from)),
                     dot_y(&p, amplitude[k]), INK_SERIES_0);
     }
+    char name[64];
+    snprintf(name, sizeof name, "highest at %.3g Hz, to [Hz]", peak / (to - from));
     draw_ends(s, a, p.x, name);
     return true;
 }

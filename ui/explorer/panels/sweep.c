@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { VALUE = 16, LEAST_CHART = 4 };
+enum { VALUE_COLUMN = 16 };  // its width [cells]
+enum { LEAST_CHART = 4 };    // rows
 enum { FRAME_OF_TITLE = 6 }; // corners, lines and blanks next to it [cells]
 
 // The least and the largest number among the runs; false without any.
@@ -19,41 +20,68 @@ static bool range_of_metric(const lab_sweep *sweep, value_range *range)
 }
 
 // Where the value of a run lies on the axis, 0 to 1: values of a list stand side by side.
-static double share_of(const lab_sweep *sweep, int index)
+static double share_along(const sweep_axis *axis, size_t index)
 {
-    const sweep_axis *axis = &sweep->axis;
-    const double last = (double)axis->count - 1, value = axis->values[index];
-    if (!axis->is_range || axis->high == axis->low) {
-        if (last > 0) {
-            return index / last;
+    const double value = axis->values[index];
+    if (axis->is_range && axis->high != axis->low) {
+        if (axis->logarithmic) {
+            return log(value / axis->low) / log(axis->high / axis->low);
         }
-        return 0.5;
+        return (value - axis->low) / (axis->high - axis->low);
     }
-    if (axis->logarithmic) {
-        return log(value / axis->low) / log(axis->high / axis->low);
+    if (axis->count > 1) {
+        return (double)index / (double)(axis->count - 1);
     }
-    return (value - axis->low) / (axis->high - axis->low);
+    return 0.5;
 }
 
 // A value of the axis in few cells: a real one as the metric is written.
-static void format_value(const sweep_axis *axis, double value,
-                         char text[SWEEP_VALUE_TEXT])
+static void format_axis_value(const sweep_axis *axis, double value,
+                              char text[SWEEP_VALUE_TEXT])
 {
-    sweep_axis_format(axis, value, text, SWEEP_VALUE_TEXT);
     if (sweep_axis_parameter(axis)->type == PARAMETER_REAL) {
         snprintf(text, SWEEP_VALUE_TEXT, "%s", draw_number(value).text);
+    } else {
+        sweep_axis_format(axis, value, text, SWEEP_VALUE_TEXT);
     }
 }
 
 // The first and the last value below the chart.
-static void draw_ends(screen *s, area a, const lab_sweep *sweep)
+static void draw_axis_ends(screen *s, area a, const sweep_axis *axis)
 {
     char first[SWEEP_VALUE_TEXT], last[SWEEP_VALUE_TEXT];
-    format_value(&sweep->axis, sweep->axis.values[0], first);
-    format_value(&sweep->axis, sweep->axis.values[sweep->axis.count - 1], last);
-    screen_words(s, a.x, a.y, a.width / 2, INK_DIM, first);
-    const int length = text_cells(last) < a.width / 2 ? text_cells(last) : a.width / 2;
-    screen_words(s, a.x + a.width - length, a.y, length, INK_DIM, last);
+    const int half = a.width / 2;
+    format_axis_value(axis, axis->values[0], first);
+    format_axis_value(axis, axis->values[axis->count - 1], last);
+    screen_words(s, a.x, a.y, half, INK_DIM, first);
+    int length = text_cells(last);
+    if (length > half) {
+        length = half;
+    }
+    area_words(s, area_right(a, a.width - length), INK_DIM, last);
+}
+
+// The place of a run on the chart [dots].
+typedef struct chart_point {
+    double x, y;
+} chart_point;
+
+static chart_point point_on_chart(const lab_sweep *sweep, const canvas *c,
+                                  value_range range, int run)
+{
+    const double value = lab_sweep_metric(sweep, run, sweep->metric);
+    const double share_down = (range.high - value) / (range.high - range.low);
+    return (chart_point){.x = share_along(&sweep->axis, (size_t)run) *
+                              (2.0 * c->width - 1),
+                         .y = share_down * (4.0 * c->height - 1)};
+}
+
+static void mark_on_chart(screen *s, const canvas *c, chart_point at, uint32_t glyph,
+                          ink shade)
+{
+    if (isfinite(at.y)) {
+        screen_put(s, c->x + (int)(at.x / 2), c->y + (int)(at.y / 4), glyph, shade);
+    }
 }
 
 // The metric over the parameter, points joined, the selected one marked.
@@ -62,161 +90,176 @@ static void draw_chart(const explorer_model *model, screen *s, area a)
     const lab_sweep *sweep = &model->sweep;
     value_range range;
     if (!range_of_metric(sweep, &range)) {
-        screen_text(s, a.x, a.y, a.width, INK_DIM, "no run has this number");
+        area_text(s, a, INK_DIM, "no run has this number");
         return;
     }
+
+    // the axes
+    const int lowest = a.height - 2;
+    const canvas c = {s, a.x + LABEL_WIDTH, a.y, a.width - LABEL_WIDTH, a.height - 1};
     screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%8s", draw_number(range.high).text);
-    screen_print(s, a.x, a.y + a.height - 2, LABEL_WIDTH, INK_DIM, "%8s",
+    screen_print(s, a.x, a.y + lowest, LABEL_WIDTH, INK_DIM, "%8s",
                  draw_number(range.low).text);
+    draw_axis_ends(s, area_right(area_row(a, c.height), LABEL_WIDTH), &sweep->axis);
+    if (sweep->selected >= sweep->count) {
+        return;
+    }
 
     // from point to point, but words are no numbers; the selected one over all others
-    const parameter_info *varied = sweep_axis_parameter(&sweep->axis);
-    const bool joined =
-        varied->type == PARAMETER_REAL || varied->type == PARAMETER_INTEGER;
-    const canvas c = {s, a.x + LABEL_WIDTH, a.y, a.width - LABEL_WIDTH, a.height - 1};
-    draw_ends(s, (area){c.x, a.y + c.height, c.width, 1}, sweep);
-    double x0 = (double)NAN, y0 = (double)NAN;
-    for (int i = 0; i <= sweep->count && sweep->selected < sweep->count; i++) {
-        const bool last = i == sweep->count;
-        const int run = last ? sweep->selected : i;
-        const double value = lab_sweep_metric(sweep, run, sweep->metric);
-        const double x = share_of(sweep, run) * (2.0 * c.width - 1);
-        const double y =
-            (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
-        if (joined && !last) {
-            canvas_line(&c, x0, y0, x, y, INK_SERIES_0);
-        } else if (isfinite(y)) {
-            screen_put(s, c.x + (int)(x / 2), c.y + (int)(y / 4), last ? 0x25cf : 0x25cb,
-                       last ? INK_EVENT : INK_SERIES_0);
+    const parameter_type type = sweep_axis_parameter(&sweep->axis)->type;
+    const bool joined = type == PARAMETER_REAL || type == PARAMETER_INTEGER;
+    chart_point before = {(double)NAN, (double)NAN};
+    for (int i = 0; i < sweep->count; i++) {
+        const chart_point at = point_on_chart(sweep, &c, range, i);
+        if (joined) {
+            canvas_line(&c, before.x, before.y, at.x, at.y, INK_SERIES_0);
+        } else {
+            mark_on_chart(s, &c, at, 0x25cb, INK_SERIES_0);
         }
-        x0 = x;
-        y0 = y;
+        before = at;
     }
+    const chart_point selected = point_on_chart(sweep, &c, range, sweep->selected);
+    mark_on_chart(s, &c, selected, 0x25cf, INK_EVENT);
 }
 
 // The runs: value and metric, from the one on that lets the selected one be seen.
-static void draw_runs(const explorer_model *model, layout *lay, screen *s, area a)
+static void draw_swept_runs(const explorer_model *model, layout *lay, screen *s, area a)
 {
     const lab_sweep *sweep = &model->sweep;
     const int first = draw_first_line(sweep->selected, sweep->count, a.height);
     layout_add_hit(lay, (hit_area){PANEL_SWEEP, PART_LINES, first, a});
 
-    // a line for each run
     for (int i = first; i < sweep->count && i - first < a.height; i++) {
         const swept_run *r = &sweep->runs[i];
-        const int y = a.y + i - first;
+        const area line = area_row(a, i - first);
         char value[SWEEP_VALUE_TEXT];
-        format_value(&sweep->axis, r->value, value);
 
         // a run that stopped says so in the unit's place
-        screen_words(s, a.x, y, VALUE - 1, INK_TITLE, value);
-        screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s",
-                     draw_number(lab_sweep_metric(sweep, i, sweep->metric)).text,
-                     r->run.summary.status == STATUS_OK
-                         ? summary_table[sweep->metric].unit
-                         : "stopped");
+        const char *unit = summary_table[sweep->metric].unit;
+        if (r->run.summary.status != STATUS_OK) {
+            unit = "stopped";
+        }
+        format_axis_value(&sweep->axis, r->value, value);
+        screen_words(s, line.x, line.y, VALUE_COLUMN - 1, INK_TITLE, value);
+        area_print(s, area_right(line, VALUE_COLUMN), INK_TEXT, "%10s %s",
+                   draw_number(lab_sweep_metric(sweep, i, sweep->metric)).text, unit);
         if (i == sweep->selected) {
-            screen_tint(s, a.x - 1, y, a.width + 2, 1, INK_SELECTED);
+            area_tint(s, (area){a.x - 1, line.y, a.width + 2, 1}, INK_SELECTED);
         }
     }
 }
 
 // --- a map -----------------------------------------------------------------------------
 
-// A cell of a map: the darker, the larger its metric.
-static void draw_cell(screen *s, area a, double share, bool selected)
+// A cell of a map: the darker, the larger its metric, of which a share of the range is
+// given.
+static void draw_map_cell(screen *s, area a, double share, bool selected)
 {
     static const uint32_t shades[] = {' ', 0x2591, 0x2592, 0x2593, 0x2588};
     enum { SHADES = sizeof shades / sizeof shades[0] };
-    const int shade = (int)(share * SHADES);
-    for (int i = 0; i < a.width * a.height; i++) {
-        screen_put(s, a.x + i % a.width, a.y + i / a.width,
-                   isfinite(share) ? shades[shade < SHADES ? shade : SHADES - 1] : '-',
-                   INK_SERIES_0);
+    uint32_t glyph = '-'; // no number
+    if (isfinite(share)) {
+        const int shade = (int)(share * SHADES);
+        glyph = shades[shade < SHADES ? shade : SHADES - 1];
+    }
+    for (int y = a.y; y < a.y + a.height; y++) {
+        for (int x = a.x; x < a.x + a.width; x++) {
+            screen_put(s, x, y, glyph, INK_SERIES_0);
+        }
     }
     if (selected) {
-        screen_tint(s, a.x, a.y, a.width, a.height, INK_SELECTED);
+        area_tint(s, a, INK_SELECTED);
     }
 }
 
-// A line of both parameters: the selected values or, of an axis, from where to where it
-// goes.
-static void draw_values(screen *s, area a, const lab_sweep *sweep, bool ends)
+// From where to where both axes go.
+static void draw_map_axes(screen *s, area line, const lab_sweep *sweep)
+{
+    const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
+    for (int i = 0; i < 2; i++) {
+        char from[SWEEP_VALUE_TEXT], to[SWEEP_VALUE_TEXT];
+        format_axis_value(axes[i], axes[i]->values[0], from);
+        format_axis_value(axes[i], axes[i]->values[axes[i]->count - 1], to);
+        const int used =
+            area_print(s, line, INK_DIM, "%s%s to %s", i == 0 ? "" : ", up ", from, to);
+        line = area_right(line, used);
+    }
+}
+
+// The values of both parameters in the selected run.
+static void draw_map_selection(screen *s, area line, const lab_sweep *sweep)
 {
     const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
     double values[2];
     lab_sweep_values(sweep, sweep->selected, values);
-    for (int i = 0, x = a.x; i < 2; i++) {
-        char from[SWEEP_VALUE_TEXT], to[SWEEP_VALUE_TEXT] = "";
-        format_value(axes[i], ends ? axes[i]->values[0] : values[i], from);
-        if (ends) {
-            format_value(axes[i], axes[i]->values[axes[i]->count - 1], to);
-        }
-        const char *name =
-            ends ? "" : strrchr(sweep_axis_parameter(axes[i])->path, '.') + 1;
-        const char *between = "";
-        if (i != 0) {
-            if (ends) {
-                between = ", up ";
-            } else {
-                between = ", ";
-            }
-        }
-        x += screen_print(s, x, a.y, a.x + a.width - x, ends ? INK_DIM : INK_TITLE,
-                          "%s%s%s%s%s%s", between, name, ends ? "" : " ", from,
-                          ends ? " to " : "", to);
+    for (int i = 0; i < 2; i++) {
+        char value[SWEEP_VALUE_TEXT];
+        const char *name = strrchr(sweep_axis_parameter(axes[i])->path, '.') + 1;
+        format_axis_value(axes[i], values[i], value);
+        const int used =
+            area_print(s, line, INK_TITLE, "%s%s %s", i == 0 ? "" : ", ", name, value);
+        line = area_right(line, used);
     }
 }
 
-// The first parameter across, the second up; below it the axes and the selected cell.
+// The cells of a map, `width` x `height` characters each, the first parameter across and
+// the second up.
+static void draw_map_cells(const lab_sweep *sweep, layout *lay, screen *s, area a,
+                           int width, int height, value_range range)
+{
+    const int across = (int)sweep->axis.count, up = (int)sweep->second.count;
+    const area map = {a.x, a.y, across * width, up * height};
+    layout_add_hit(lay, (hit_area){PANEL_SWEEP, PART_CELLS, height, map});
+    for (int i = 0; i < sweep->count; i++) {
+        const int column = i % across, row = up - 1 - i / across;
+        const area place = {a.x + column * width, a.y + row * height, width, height};
+        const double value = lab_sweep_metric(sweep, i, sweep->metric);
+        const double share = (value - range.low) / (range.high - range.low);
+        draw_map_cell(s, place, share, i == sweep->selected);
+    }
+}
+
+// The map, and in the last rows the axes, the shades and the selected cell.
 static void draw_map(const explorer_model *model, layout *lay, screen *s, area a)
 {
-    enum { BELOW = 4, TALL = 3 };
+    enum { WORDS = 4, MOST_CELL_HEIGHT = 3 }; // rows
     const lab_sweep *sweep = &model->sweep;
     const int across = (int)sweep->axis.count, up = (int)sweep->second.count;
-    const int wide = a.width / across, most = (a.height - BELOW) / up,
-              tall = most < TALL ? most : TALL;
-    value_range range;
-    if (wide < 1 || tall < 1) {
-        screen_print(s, a.x, a.y, a.width, INK_DIM, "a map of %d x %d has no room here",
-                     across, up);
-    } else if (range_of_metric(sweep, &range)) {
-        layout_add_hit(lay, (hit_area){PANEL_SWEEP,
-                                       PART_CELLS,
-                                       tall,
-                                       {a.x, a.y, across * wide, up * tall}});
-        for (int i = 0; i < sweep->count; i++) {
-            const double value = lab_sweep_metric(sweep, i, sweep->metric);
-            const area place = {a.x + i % across * wide,
-                                a.y + (up - 1 - i / across) * tall, wide, tall};
-            draw_cell(s, place, (value - range.low) / (range.high - range.low),
-                      i == sweep->selected);
-        }
-        screen_print(s, a.x, a.y + a.height - 3, a.width, INK_DIM, "blank %s, dark %s",
-                     draw_number(range.low).text, draw_number(range.high).text);
-    } else {
-        screen_text(s, a.x, a.y, a.width, INK_DIM, "no run has this number");
+    const area words = area_below(a, a.height - WORDS);
+    const int width = a.width / across;
+    int height = (a.height - WORDS) / up;
+    if (height > MOST_CELL_HEIGHT) {
+        height = MOST_CELL_HEIGHT;
     }
-    draw_values(s, (area){a.x, a.y + a.height - 4, a.width, 1}, sweep, true);
-    draw_values(s, (area){a.x, a.y + a.height - 2, a.width, 1}, sweep, false);
+
+    value_range range;
+    if (width < 1 || height < 1) {
+        area_print(s, a, INK_DIM, "a map of %d x %d has no room here", across, up);
+    } else if (range_of_metric(sweep, &range)) {
+        draw_map_cells(sweep, lay, s, a, width, height, range);
+        area_print(s, area_row(words, 1), INK_DIM, "blank %s, dark %s",
+                   draw_number(range.low).text, draw_number(range.high).text);
+    } else {
+        area_text(s, a, INK_DIM, "no run has this number");
+    }
+    draw_map_axes(s, area_row(words, 0), sweep);
+    draw_map_selection(s, area_row(words, 2), sweep);
     if (sweep->selected < sweep->count) {
-        screen_print(
-            s, a.x, a.y + a.height - 1, a.width, INK_TEXT, "%s %s",
-            draw_number(lab_sweep_metric(sweep, sweep->selected, sweep->metric)).text,
-            summary_table[sweep->metric].unit);
+        const double value = lab_sweep_metric(sweep, sweep->selected, sweep->metric);
+        area_print(s, area_row(words, 3), INK_TEXT, "%s %s", draw_number(value).text,
+                   summary_table[sweep->metric].unit);
     }
 }
 
 // What is varied and how many runs there are: the last part of the path where the whole
 // has no room, and of that what `most` cells have room for.
-static void write_title(char *title, size_t size, const lab_sweep *sweep, int most)
+static void write_sweep_title(char *title, size_t size, const lab_sweep *sweep, int most)
 {
     char count[64];
     const char *path = parameter_table[sweep->axis.parameter].path;
     const char *last = strrchr(path, '.') + 1;
-    const int room = most - snprintf(count, sizeof count, ", %d of %d", sweep->count,
-                                     lab_sweep_total(sweep));
-
+    snprintf(count, sizeof count, ", %d of %d", sweep->count, lab_sweep_total(sweep));
+    const int room = most - (int)strlen(count);
     if ((int)(strlen("sweep ") + strlen(path)) <= room) {
         snprintf(title, size, "sweep %s%s", path, count);
     } else if ((int)strlen(last) <= room) {
@@ -226,58 +269,70 @@ static void write_title(char *title, size_t size, const lab_sweep *sweep, int mo
     }
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+static void draw_sweep(const explorer_model *model, const explorer_view *view,
+                       layout *lay, screen *s, area a)
 {
     (void)view;
     const lab_sweep *sweep = &model->sweep;
     char title[LINE_TEXT];
     if (!lab_sweep_is_on(sweep)) {
-        screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
-                     "no sweep (:sweep begins one)");
+        area_frame(s, a, INK_FRAME, "no sweep (:sweep begins one)");
         return;
     }
-    write_title(title, sizeof title, sweep, a.width - FRAME_OF_TITLE);
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
-    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s (M: next)",
-                 summary_table[sweep->metric].label);
+    write_sweep_title(title, sizeof title, sweep, a.width - FRAME_OF_TITLE);
+    area_frame(s, a, INK_FRAME, title);
 
+    // the metric, then what it comes to
+    const area inside = area_inside(a), below = area_below(inside, 1);
+    area_print(s, inside, INK_DIM, "%s (M: next)", summary_table[sweep->metric].label);
     if (lab_sweep_is_map(sweep)) {
-        draw_map(model, lay, s, (area){a.x + 2, a.y + 2, a.width - 4, a.height - 3});
+        draw_map(model, lay, s, below);
         return;
     }
 
-    // the chart, if there is room for it and a few runs
-    const int inner = a.height - 3, chart = inner / 2 >= LEAST_CHART ? inner / 2 : 0;
-    if (chart > 0 && sweep->count > 0) {
-        draw_chart(model, s, (area){a.x + 2, a.y + 2, a.width - 4, chart});
+    // the chart in the upper half, if there is room for it and a few runs
+    int chart_height = below.height / 2;
+    if (chart_height < LEAST_CHART) {
+        chart_height = 0;
     }
-    if (inner - chart > 0) {
-        draw_runs(model, lay, s,
-                  (area){a.x + 2, a.y + 2 + chart, a.width - 4, inner - chart});
+    if (chart_height > 0 && sweep->count > 0) {
+        draw_chart(model, s, (area){below.x, below.y, below.width, chart_height});
     }
+    if (below.height > chart_height) {
+        draw_swept_runs(model, lay, s, area_below(below, chart_height));
+    }
+}
+
+// The run whose cell in the map was pressed; `index` of the part is a cell's height.
+static int run_in_map(const lab_sweep *sweep, const panel_gesture *g)
+{
+    const area a = g->hit.area;
+    const int across = (int)sweep->axis.count, lowest = a.y + a.height - 1;
+    const int column = (g->event.x - a.x) / (a.width / across);
+    const int row = (lowest - g->event.y) / g->hit.index;
+    return row * across + column;
 }
 
 // A click selects a run, the wheel goes through them.
-static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const panel_gesture *g)
+static bool point_at_sweep(explorer_model *model, explorer_view *view,
+                           explorer_input *input, const panel_gesture *g)
 {
     (void)input;
     (void)view;
-    const area a = g->hit.area;
-    const int wheel = pointer_wheel(g->event), across = (int)model->sweep.axis.count;
-    const bool pressed = g->event.kind == POINTER_PRESS;
-    int to = model->sweep.selected + wheel;
-    if (pressed && g->hit.part == PART_CELLS) {
-        to = (a.y + a.height - 1 - g->event.y) / g->hit.index * across +
-             (g->event.x - a.x) / (a.width / across);
-    } else if (pressed) {
-        to = g->hit.index + g->event.y - a.y;
+    const int selected = model->sweep.selected, wheel = pointer_wheel(g->event);
+    if (wheel != 0) {
+        act_select_swept(model, wheel);
+        return true;
     }
-    if (pressed || wheel != 0) {
-        act_select_swept(model, to - model->sweep.selected);
+    if (g->event.kind != POINTER_PRESS) {
+        return false;
     }
-    return pressed || wheel != 0;
+    int to = gesture_line(g);
+    if (g->hit.part == PART_CELLS) {
+        to = run_in_map(&model->sweep, g);
+    }
+    act_select_swept(model, to - selected);
+    return true;
 }
 
-const panel sweep_panel = {.name = "sweep", .draw = draw, .point = point};
+const panel sweep_panel = {.name = "sweep", .draw = draw_sweep, .point = point_at_sweep};
