@@ -47,7 +47,11 @@ static int count_of(const arm_observer *o)
 
 int arm_observer_torque_index(const arm_observer *o)
 {
-    return 2 * count_of(o) + o->touches;
+    // behind coordinates and rates, and in contact the wall's angle
+    if (o->touches) {
+        return 2 * o->arm.contact.count + 1;
+    }
+    return 2 * o->arm.free.count;
 }
 
 static int wall_index(const arm_observer *o)
@@ -62,7 +66,10 @@ static int state_count(const arm_observer *o)
 
 double arm_observer_square(const arm_observer *o, int i)
 {
-    return modes_of(o)->square[i] * (o->touches && i == 0 ? o->stiffness : 1);
+    if (o->touches && i == 0) {
+        return modes_of(o)->square[i] * o->stiffness;
+    }
+    return modes_of(o)->square[i];
 }
 
 // start + a.b over n entries.
@@ -214,11 +221,9 @@ static double friction_under(const arm_observer *o, const estimator *e, double d
 {
     double rate = arm_observer_rate(o, e), limit = o->stiction;
     if (fabs(rate) > REST) {
-        if (rate > 0) {
-            return limit;
-        }
-        return -limit;
+        return copysign(limit, rate);
     }
+
     // what brings it to rest and holds it there
     double net = drive + e->z[arm_observer_torque_index(o)] - o->hub_damping * rate -
                  balancing_torque(o, e);
@@ -236,7 +241,8 @@ double arm_observer_force_per_torque(const arm_observer *o)
     return share / o->arm.length;
 }
 
-// The force is row times state plus that of drive and friction.
+// The force, L f = T - sum p_i a_i'' (reduced_arm.h), is row times state plus what drive
+// and friction add at once.
 static void force_row(const arm_observer *o, double *row)
 {
     const mode_set *set = &o->arm.contact;
@@ -262,29 +268,40 @@ double arm_observer_force(const arm_observer *o, const estimator *e, double driv
 
 // --- one sample ------------------------------------------------------------------------
 
-static void predict(const arm_observer *o, estimator *e, const sampled_model *model,
-                    double h, double voltage)
+// What the model leaves out over a time h, as variances: torques on the hub that change
+// from sample to sample, and the drift of the unknown torque and of the wall.
+static void process_noise(const arm_observer *o, const estimator *e, double h,
+                          double noise[N])
 {
     const mode_set *set = modes_of(o);
     const int n = set->count;
-    double noise[N] = {0}, drive = o->torque_per_volt * voltage, share = h / o->period;
+    const double share = h / o->period;
     for (int i = 0; i < n; i++) {
-        double kick = set->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
+        const double kick = set->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
         noise[n + i] = share * kick * kick;
     }
 
-    // process noise of the states that drift
     const double drift = o->touches ? TORQUE_STAYS : TORQUE_DRIFT;
     noise[arm_observer_torque_index(o)] = drift * drift * h;
+
+    // a wrong nominal stiffness shows as a wall that moves with the hub
     if (o->touches) {
-        // a wrong nominal stiffness shows as a wall that moves with the hub
-        double bend = angle_of(o, e, set->hub) - e->z[wall_index(o)];
-        double wandering =
+        const double bend = angle_of(o, e, set->hub) - e->z[wall_index(o)];
+        const double wandering =
             2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
         noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
     }
+}
 
-    double net = drive - friction_under(o, e, drive);
+// An estimate after a time h under a command that is in effect [V].
+static void predict_state(const arm_observer *o, estimator *e, const sampled_model *model,
+                          double h, double voltage)
+{
+    const double drive = o->torque_per_volt * voltage;
+    double noise[N] = {0};
+    process_noise(o, e, h, noise);
+
+    const double net = drive - friction_under(o, e, drive);
     if (!o->touches) {
         estimator_predict(e, model, net, noise);
         return;
@@ -292,8 +309,8 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
 
     // stiffer than nominal: the difference as a force held over h
     sampled_model now = *model;
-    double more = (o->stiffness - 1) * o->arm.contact.square[0] * h;
-    now.a[n][0] -= more;
+    const double more = (o->stiffness - 1) * o->arm.contact.square[0] * h;
+    now.a[o->arm.contact.count][0] -= more;
     now.a[0][0] -= more * h / 2;
     estimator_predict(e, &now, net, noise);
 }
@@ -308,20 +325,41 @@ static double take_reading(arm_observer *o, const double *row, double offset,
     // what the estimate expects, and how far off that may be
     const double expected = add_products(offset, n, row, o->e.z);
     const double variance = add_variance(deviation * deviation, n, row, &o->e.p[0][0]);
+    const double off = fabs(reading - expected) / sqrt(variance);
 
-    // beyond the limit the weight falls with the distance
-    double off = fabs(reading - expected) / sqrt(variance);
-    double doubt = off > OUTLIER ? off / OUTLIER : 1;
-
-    // the estimate's own variance is left out: a model is no better for claiming less of
-    // it
+    // -2 log likelihood by Student's distribution; the estimate's own variance is left
+    // out, as a model is no better for claiming less of it
     if (o->moves) {
-        double miss = (reading - expected) / deviation;
+        const double miss = (reading - expected) / deviation;
         o->missed += (TAILS + 1) * plain_log(1 + miss * miss / TAILS);
     }
+
+    // beyond the limit the weight falls with the distance
+    const double doubt = off > OUTLIER ? off / OUTLIER : 1;
     estimator_correct(&o->e, n, row, offset, reading,
                       deviation * deviation * doubt * doubt);
     return 1 / doubt;
+}
+
+// The accelerometer shows a'' at the hub: row times state, and what drive and friction
+// give,
+//
+//     sum h_i a_i'',    a_i'' = -w_i^2 a_i - c_i a_i' + h_i T
+static void take_acceleration(arm_observer *o, const controller_input *in)
+{
+    const mode_set *set = modes_of(o);
+    const int n = set->count;
+    const double mobility = hub_mobility(set), drive = o->torque_per_volt * in->voltage;
+
+    double row[N] = {0};
+    for (int i = 0; i < n; i++) {
+        row[i] = -set->hub[i] * arm_observer_square(o, i);
+        row[n + i] =
+            -set->hub[i] * set->damping[i] - mobility * o->hub_damping * set->hub[i];
+    }
+    row[arm_observer_torque_index(o)] = mobility;
+    const double offset = mobility * (drive - friction_under(o, &o->e, drive));
+    take_reading(o, row, offset, in->accelerometer, ACCELERATION);
 }
 
 // Hub and beam: encoder, tachometer, and film and accelerometer where they are fitted.
@@ -334,26 +372,20 @@ static void take_motion(arm_observer *o, const hub_sensors *s, const controller_
         angle[i] = rate[n + i] = set->hub[i];
         bending[i] = set->bending[i];
     }
-    angle[wall_index(o)] += o->touches;
+
+    // in contact the modes are seen from the wall
+    if (o->touches) {
+        angle[wall_index(o)] = 1;
+    }
     take_reading(o, angle, 0, in->encoder, s->angle_deviation);
     take_reading(o, rate, 0, in->tachometer, sqrt(s->rate_variance));
 
     if (!isnan(in->film)) {
-        double leaked = FILM_LEAK * (in->time - o->since);
+        const double leaked = FILM_LEAK * (in->time - o->since);
         take_reading(o, bending, 0, in->film, FILM_NOISE + fmin(leaked, 1));
     }
     if (!isnan(in->accelerometer)) {
-        // a'' at the hub: row times state, and what drive and friction give
-        double row[N] = {0}, mobility = hub_mobility(set);
-        double drive = o->torque_per_volt * in->voltage;
-        for (int i = 0; i < n; i++) {
-            row[i] = -set->hub[i] * arm_observer_square(o, i);
-            row[n + i] =
-                -set->hub[i] * set->damping[i] - mobility * o->hub_damping * set->hub[i];
-        }
-        row[arm_observer_torque_index(o)] = mobility;
-        double offset = mobility * (drive - friction_under(o, &o->e, drive));
-        take_reading(o, row, offset, in->accelerometer, ACCELERATION);
+        take_acceleration(o, in);
     }
 }
 
@@ -371,31 +403,39 @@ static double take_force(arm_observer *o, const controller_input *in)
     return take_reading(o, row, offset, in->force, arm_observer_force_noise(in->force));
 }
 
-// How stiff the arm is in contact: the force over the way of the hub since the touch,
-// both less what the other modes and the motion make of them, by least squares. The
-// nominal one counts as STIFF_TIME of pressing with the wanted force, long enough for
-// vibrations that the model does not show to cancel.
+// How stiff the arm is in contact, over its nominal stiffness: by least squares of the
+// forces of the first mode, as read and as the nominal stiffness has them,
+//
+//     stiffness = (sum nominal read + guess)/(sum nominal^2 + guess)
+//
+// both less what the other modes and the motion make of them. The guess counts as
+// STIFF_GUESS of pressing with the wanted force, long enough for vibrations that the
+// model does not show to cancel.
 static void learn_stiffness(arm_observer *o, const controller_input *in, double worth)
 {
     const mode_set *set = &o->arm.contact;
     const double per_mode = set->momentum[0] * set->square[0] / o->arm.length;
-    double drive = o->torque_per_volt * in->voltage, bend = in->encoder - o->met;
+
+    // the nominal force by the way of the hub since the touch
+    double bend = in->encoder - o->met;
     for (int i = 1; i < set->count; i++) {
         bend -= set->hub[i] * o->e.z[i];
     }
+    const double nominal = per_mode * bend / set->hub[0];
 
-    // the force of the first mode, nominal and as read
-    double nominal = per_mode * bend / set->hub[0];
-    double others =
+    // and as it was read
+    const double drive = o->torque_per_volt * in->voltage;
+    const double others =
         arm_observer_force(o, &o->e, drive) - per_mode * o->stiffness * o->e.z[0];
-    double read = in->force - others;
+    const double read = in->force - others;
 
-    double kept = 1 - fmin(1, o->period / STIFF_MEMORY),
-           weight = o->period * worth * worth;
+    // sums that forget, and their quotient
+    const double kept = 1 - fmin(1, o->period / STIFF_MEMORY);
+    const double weight = o->period * worth * worth;
     o->stiff_force = kept * o->stiff_force + weight * nominal * read;
     o->stiff_bend = kept * o->stiff_bend + weight * nominal * nominal;
-    double stiffness = (o->stiff_force + o->stiff_nominal) /
-                       fmax(o->stiff_bend + o->stiff_nominal, 1e-12);
+    const double stiffness = (o->stiff_force + o->stiff_nominal) /
+                             fmax(o->stiff_bend + o->stiff_nominal, 1e-12);
     o->stiffness = fmax(LEAST_STIFF, stiffness);
 }
 
@@ -431,10 +471,10 @@ static void follow_motion(arm_observer *o, const hub_sensors *s,
 {
     const sampled_model *models = o->touches ? o->contact_model : o->free_model;
     if (o->delay > 0) {
-        predict(o, &o->e, &models[0], o->delay, o->last_voltage);
+        predict_state(o, &o->e, &models[0], o->delay, o->last_voltage);
     }
     if (o->delay < o->period) {
-        predict(o, &o->e, &models[1], o->period - o->delay, in->voltage);
+        predict_state(o, &o->e, &models[1], o->period - o->delay, in->voltage);
     }
     if (!o->touches && struck(o, s, in)) {
         doubt_tip(o, &o->e);
@@ -490,8 +530,8 @@ estimator arm_observer_ahead(const arm_observer *o, double voltage)
 {
     estimator ahead = o->e;
     if (o->delay > 0) {
-        predict(o, &ahead, o->touches ? &o->contact_model[0] : &o->free_model[0],
-                o->delay, voltage);
+        predict_state(o, &ahead, o->touches ? &o->contact_model[0] : &o->free_model[0],
+                      o->delay, voltage);
     }
     return ahead;
 }
@@ -503,29 +543,38 @@ bool arm_observer_returns(const arm_observer *o)
            add_products(0, free->count, free->tip, o->flown.z + free->count) > 0;
 }
 
-// --- the place of the wall ---
+// --- touch and flight
+// --------------------------------------------------------------------
+
+// The wall is where the tip came between the two samples, anywhere on its way there; or
+// by that and by where it was known to be, each with the weight of the other's variance.
+static double place_of_wall(const arm_observer *o, double *variance)
+{
+    const double way = o->tip_now - o->tip_before;
+    const double met = (o->tip_now + o->tip_before) / 2;
+    *variance = way * way / 12 + 1e-6;
+    if (!(o->wall_variance < HUGE_VAL)) {
+        return met;
+    }
+    const double known = o->wall_variance + 1e-6, by_way = *variance;
+    *variance = known * by_way / (known + by_way);
+    return (met * known + o->wall * by_way) / (known + by_way);
+}
 
 void arm_observer_touch(arm_observer *o, double time)
 {
     assert(!o->touches);
     const mode_set *contact = &o->arm.contact;
     const int m = contact->count, n = o->arm.free.count, wall = 2 * m;
+    double variance;
+    o->met = place_of_wall(o, &variance);
 
-    // the wall is where the tip came between the two samples; or where it was known to be
-    double way = o->tip_now - o->tip_before;
-    double met = (o->tip_now + o->tip_before) / 2, variance = way * way / 12 + 1e-6;
-    if (o->wall_variance < HUGE_VAL) {
-        double known = o->wall_variance + 1e-6;
-        met = (met * known + o->wall * variance) / (known + variance);
-        variance = known * variance / (known + variance);
-    }
-
-    // should it be thrown back,
+    // beside it the estimate of a tip that is thrown back
     o->flown = o->e;
     o->young = true;
     doubt_tip(o, &o->flown);
 
-    // what the touch keeps of the motion, seen from there
+    // what the touch keeps of the motion, and the torque that the model does not know of
     double t[N][N] = {{0}};
     for (int i = 0; i < m; i++) {
         for (int j = 0; j < n; j++) {
@@ -534,17 +583,19 @@ void arm_observer_touch(arm_observer *o, double time)
     }
     t[wall + 1][2 * n] = 1;
     estimator_transform(&o->e, 2 * n + 1, 2 * m + 2, t);
-    o->e.z[wall] = o->met = met;
+
+    // modes as seen from the wall, whose variance is theirs, too; rates after the impulse
+    o->e.z[wall] = o->met;
+    o->e.p[wall][wall] = variance;
     for (int i = 0; i < m; i++) {
-        o->e.z[i] -= contact->momentum[i] * met;
+        o->e.z[i] -= contact->momentum[i] * o->met;
         o->e.p[wall][i] = o->e.p[i][wall] = -contact->momentum[i] * variance;
         for (int j = 0; j < m; j++) {
             o->e.p[i][j] += contact->momentum[i] * contact->momentum[j] * variance;
         }
-        double kick = contact->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
+        const double kick = contact->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
         o->e.p[m + i][m + i] += kick * kick;
     }
-    o->e.p[wall][wall] = variance;
     o->touches = true;
     o->since = time;
 }
@@ -554,19 +605,20 @@ void arm_observer_leave(arm_observer *o, double time)
     assert(o->touches);
     const mode_set *free = &o->arm.free;
     const int m = o->arm.contact.count, n = free->count, wall = 2 * m;
-    double t[N][N] = {{0}};
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < m; j++) {
-            t[i][j] = t[n + i][m + j] = o->arm.touch[j][i];
-        }
-        t[i][wall] = free->momentum[i];
-    }
-    t[2 * n][wall + 1] = 1;
 
-    // a young contact may have been none that the tip stayed in
     if (o->young) {
+        // a young contact may have been none that the tip stayed in
         o->e = o->flown;
     } else {
+        // the motion at the wall as one in flight, seen from the angle of rest
+        double t[N][N] = {{0}};
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < m; j++) {
+                t[i][j] = t[n + i][m + j] = o->arm.touch[j][i];
+            }
+            t[i][wall] = free->momentum[i];
+        }
+        t[2 * n][wall + 1] = 1;
         estimator_transform(&o->e, 2 * m + 2, 2 * n + 1, t);
         doubt_tip(o, &o->e);
     }

@@ -9,6 +9,7 @@
 
 enum { N = ESTIMATOR_STATES, EXTENDED = N + 1, DOUBLINGS = 60 };
 
+// out = factor x y of matrices of states with the input behind them; `out` may be one.
 static void multiply_extended(int size, double out[EXTENDED][EXTENDED],
                               double x[EXTENDED][EXTENDED], double y[EXTENDED][EXTENDED],
                               double factor)
@@ -111,11 +112,7 @@ void estimator_predict(estimator *e, const sampled_model *m, double u,
     multiply_states(n, n, n, ap[0], m->a[0], false, e->p[0], false);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            if (i == j) {
-                e->p[i][j] = noise[i];
-            } else {
-                e->p[i][j] = 0;
-            }
+            e->p[i][j] = i == j ? noise[i] : 0;
             for (int k = 0; k < n; k++) {
                 e->p[i][j] += ap[i][k] * m->a[j][k];
             }
@@ -177,14 +174,14 @@ static void multiply(int n, matrix out, matrix a, bool transpose_a, matrix b,
 }
 
 // x = (I + g h)^-1 b. False if that is singular.
-static bool solve(int n, matrix x, matrix g, matrix h, matrix b)
+static bool solve_resolvent(int n, matrix x, matrix g, matrix h, matrix b)
 {
     matrix product;
     double left[N * N], right[N * N];
     multiply(n, product, g, false, h, false);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            left[i * n + j] = product[i][j] + (i == j);
+            left[i * n + j] = product[i][j] + (i == j ? 1 : 0);
             right[i * n + j] = b[i][j];
         }
     }
@@ -198,22 +195,28 @@ static bool solve(int n, matrix x, matrix g, matrix h, matrix b)
     return true;
 }
 
-// The solution x of x = a'x (I + g x)^-1 a + q by doubling.
+// The solution x of x = a'x (I + g x)^-1 a + q by doubling: with f = (I + g x)^-1
+//
+//     x <- x + a'x f a,    g <- g + a f g a',    a <- a f a
+//
+// from x = q on. False if it does not converge.
 static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
 {
     memcpy(x, q, sizeof(matrix));
     for (int k = 0; k < DOUBLINGS; k++) {
         matrix fa, fg, step;
-        if (!solve(n, fa, g, x, a) || !solve(n, fg, g, x, g)) {
+        if (!solve_resolvent(n, fa, g, x, a) || !solve_resolvent(n, fg, g, x, g)) {
             return false;
         }
 
-        // x + a'x f a, g + a f g a', a f a with f = (I + g x)^-1
+        // what x grows by, a'x f a, and g, a f g a'; and the next a, a f a
         multiply(n, step, x, false, fa, false);
         multiply(n, step, a, true, step, false);
         multiply(n, fg, a, false, fg, false);
         multiply(n, fg, fg, false, a, true);
         multiply(n, a, a, false, fa, false);
+
+        // until x does not change any more
         double change = 0, size = 0;
         for (int i = 0; i < n; i++) {
             for (int j = 0; j < n; j++) {

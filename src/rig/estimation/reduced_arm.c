@@ -25,12 +25,9 @@ static void nominal_arm(arm *a, const controller_setup *setup, double tip_mass)
     p.arm.hub_inertia = setup->hub_inertia;
     p.arm.k2 = setup->k2;
     p.arm.damping_ratio = setup->damping_ratio;
+    p.arm.hub_joint = HUB_RIGID;
     if (isfinite(setup->hub_spring)) {
         p.arm.hub_joint = HUB_SPRING;
-    } else {
-        p.arm.hub_joint = HUB_RIGID;
-    }
-    if (isfinite(setup->hub_spring)) {
         p.arm.k1 = setup->hub_spring;
     }
 
@@ -70,6 +67,8 @@ static void take_modes(mode_set *set, const arm *a, const double *mass, double h
                 tip += x[i] / a->links;
             }
         }
+
+        // normalised, x'M x = 1
         double scale = 1 / sqrt(norm);
         for (int i = 0; i < n; i++) {
             x[i] *= scale;
@@ -101,12 +100,19 @@ static status contact_modes(const arm *a, double wall_stiffness, const chain_mod
         return modes_compute(a, HUB_FREE, TIP_PINNED, count, work->frequencies,
                              work->contact);
     }
-    for (int i = 0; i < n * n; i++) {
-        const bool moves_tip = i / n >= a->first && i % n >= a->first;
-        const double l = a->link_length;
-        work->contact[i] = work->stiffness[i] + (moves_tip ? wall_stiffness * l * l : 0);
-        work->copy[i] = work->mass[i];
+
+    // the wall's spring acts on the tip, which all links move by their length
+    const double l = a->link_length;
+    memcpy(work->copy, work->mass, (size_t)(n * n) * sizeof *work->copy);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            const bool moves_tip = i >= a->first && j >= a->first;
+            const double spring = moves_tip ? wall_stiffness * l * l : 0;
+            work->contact[i * n + j] = work->stiffness[i * n + j] + spring;
+        }
     }
+
+    // their frequencies, of squares that rounding may leave below zero
     *count = n;
     if (!symmetric_eigen_pair(n, work->contact, work->copy, work->frequencies,
                               work->scratch)) {
@@ -134,10 +140,11 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
                    work->free);
         code = contact_modes(a, wall_stiffness, work, &contact_count);
     }
+    if (code == STATUS_NO_MEMORY) {
+        return reduced_arm_no_memory;
+    }
     if (code != STATUS_OK) {
-        return code == STATUS_NO_MEMORY
-                   ? reduced_arm_no_memory
-                   : "the modes of the arm it believes in cannot be computed";
+        return "the modes of the arm it believes in cannot be computed";
     }
     take_modes(&r->contact, a, work->mass, highest, contact_count, work->frequencies,
                work->contact);
@@ -145,11 +152,13 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
         return "the arm it believes in does not bend";
     }
 
-    // the projection of a touch
+    // inertia of the rotation
     r->inertia = 0;
     for (int i = 0; i < n * n; i++) {
         r->inertia += work->mass[i];
     }
+
+    // the projection of a touch, x_c'M x_f
     for (int c = 0; c < r->contact.count; c++) {
         for (int f = 0; f < r->free.count; f++) {
             r->touch[c][f] = 0;

@@ -518,7 +518,7 @@ static void restart_mode(observer_memory *m, double time)
     } else if (m->in_least_time) {
         quickest_touch_init(&m->quickest, design_of(m));
     } else if (m->mode == TRAVEL) {
-        smooth_approach_again(&m->plan, design_of(m));
+        smooth_approach_restart(&m->plan, design_of(m));
     }
 }
 

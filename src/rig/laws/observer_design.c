@@ -28,9 +28,8 @@ static void command_model(const controller_setup *setup, const mode_set *set, in
                           double torque_per_command, sampled_model *model)
 {
     const int n = set->count, k = n - first;
-
-    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}},
-           input[ESTIMATOR_STATES] = {0};
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}};
+    double input[ESTIMATOR_STATES] = {0};
 
     // a_i'' = -w_i^2 a_i - c_i a_i' + h_i (torque - damping hub rate)
     for (int i = 0; i < n; i++) {
@@ -88,8 +87,8 @@ static bool find_press_gain(observer_design *d, const controller_setup *setup, b
 {
     const mode_set *set = &d->observer.arm.contact;
     const double drive = set->hub[0] * setup->torque_per_volt;
-    const double effort =
-        (gives ? SOFT_EFFORT : 1) * drive * drive / (4 * set->square[0]);
+    const double share = gives ? SOFT_EFFORT : 1;
+    const double effort = share * drive * drive / (4 * set->square[0]);
     return find_gain(setup, set, 0, effort, d->press_gain);
 }
 
@@ -103,7 +102,7 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
 {
     const reduced_arm *arm = &d->observer.arm;
     const mode_set *set = &arm->contact;
-    double square = set->square[0], h = set->hub[0], p = set->momentum[0];
+    const double square = set->square[0], h = set->hub[0], p = set->momentum[0];
 
     // the fastest is what the approach voltage holds against friction
     double held = setup->torque_per_volt * fabs(task->approach_voltage) - setup->stiction;
@@ -129,10 +128,10 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
                                 fmax(LEAST_SPEED, SOFT_SPEED * task->force));
     }
 
+    // changes of speed take a period of the first vibration, with edges of the second's
+    d->ramp_edge = 0;
     if (arm->free.count > 2) {
         d->ramp_edge = 2 * PI / sqrt(arm->free.square[2]);
-    } else {
-        d->ramp_edge = 0;
     }
     d->ramp_time = 2 * PI / sqrt(arm->free.square[1]) + d->ramp_edge;
 }
@@ -205,9 +204,15 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
         controller_setup other = *setup;
         other.links = links[i];
         refusal = observer_design_init(d, &other, task);
-        double ratio =
-            refusal == NULL ? reduced_arm_compliance(&d->observer.arm) / told : 1;
-        a->count += fmax(ratio, 1 / ratio) > AS_STIFF;
+        if (refusal != NULL) {
+            break;
+        }
+
+        // one as stiff as that told of is none of its own
+        const double ratio = reduced_arm_compliance(&d->observer.arm) / told;
+        if (fmax(ratio, 1 / ratio) > AS_STIFF) {
+            a->count++;
+        }
     }
 
     // a spring k1 at the hub gives 4 k2/k1 of what a beam of two links does
@@ -281,9 +286,12 @@ bool observer_arms_choose(observer_arms *a)
     int best = a->on;
     double least = observer_arms_observer(a)->missed - NO_DOUBT;
     for (int i = 0; i < count; i++) {
+        // walls that give and masses have to be that much better
         const bool gives = i >= a->giving && i < a->loaded;
-        const double missed =
-            a->arms[i].observer.missed + (i >= a->giving ? HANDICAP : 0);
+        double missed = a->arms[i].observer.missed;
+        if (i >= a->giving) {
+            missed += HANDICAP;
+        }
         if (missed < least && !(gives && a->thrown)) {
             best = i;
             least = missed;

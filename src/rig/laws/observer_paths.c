@@ -131,7 +131,7 @@ void smooth_approach_slow(smooth_approach *p, const observer_design *d, double t
     }
 }
 
-void smooth_approach_again(smooth_approach *p, const observer_design *d)
+void smooth_approach_restart(smooth_approach *p, const observer_design *d)
 {
     const double first = p->changing[0], second = p->changing[1];
     const bool slows = p->slows;
@@ -235,8 +235,29 @@ static dual dual_at(const quickest_touch *q, const two_equations *e)
     return d;
 }
 
+// As much of a step (dx, dy) as lowers the dual function by a tenth of what its slope
+// promises, at least a 128th of it.
+static dual take_step(const quickest_touch *q, two_equations *e, const dual *now,
+                      double dx, double dy)
+{
+    const double descent = dx * now->slope[0] + dy * now->slope[1];
+    two_equations next = *e;
+    dual there = *now;
+    double share = 1;
+    for (int j = 0; j < HALVINGS; j++, share /= 2) {
+        next.x = e->x + share * dx;
+        next.y = e->y + share * dy;
+        there = dual_at(q, &next);
+        if (there.value <= now->value + 0.1 * share * descent) {
+            break;
+        }
+    }
+    *e = next;
+    return there;
+}
+
 // Finds both multipliers by Newton's method. False if no torques do it.
-static bool solve(const quickest_touch *q, two_equations *e)
+static bool solve_equations(const quickest_touch *q, two_equations *e)
 {
     // scales of both equations
     two_equations unbounded = *e;
@@ -258,22 +279,7 @@ static bool solve(const quickest_touch *q, two_equations *e)
         const double c = d.bend[2] + DAMPED * whole.bend[2], determinant = a * c - b * b;
         const double dx = (b * d.slope[1] - c * d.slope[0]) / determinant;
         const double dy = (b * d.slope[0] - a * d.slope[1]) / determinant;
-        const double descent = dx * d.slope[0] + dy * d.slope[1];
-
-        // as much of it as lowers the function
-        two_equations next = *e;
-        dual there = d;
-        double share = 1;
-        for (int j = 0; j < HALVINGS; j++, share /= 2) {
-            next.x = e->x + share * dx;
-            next.y = e->y + share * dy;
-            there = dual_at(q, &next);
-            if (there.value <= d.value + 0.1 * share * descent) {
-                break;
-            }
-        }
-        *e = next;
-        d = there;
+        d = take_step(q, e, &d, dx, dy);
     }
     return false;
 }
@@ -304,7 +310,7 @@ bool quickest_touch_plan(quickest_touch *q, const quickest_task *task)
                            .force = task->force - q->force_per_wall * task->wall -
                                     sum_of(q, q->force, z),
                            .most = most};
-        if (n < first || !solve(q, &e)) {
+        if (n < first || !solve_equations(q, &e)) {
             continue;
         }
         for (int k = 0; k < n; k++) {

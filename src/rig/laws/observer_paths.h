@@ -33,7 +33,7 @@ void smooth_approach_begin(smooth_approach *p, const observer_design *d, double 
 
 // The plan as it would be, had the present changes of speed been begun for the design of
 // now.
-void smooth_approach_again(smooth_approach *p, const observer_design *d);
+void smooth_approach_restart(smooth_approach *p, const observer_design *d);
 
 // Begins to slow down where the tip, or the rotation of the whole arm [rad], comes near
 // the guarded angle; beyond the other, to search.
