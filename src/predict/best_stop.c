@@ -91,18 +91,18 @@ bool pressed_after_impact(const parameters *p, const three_body_state *before,
 // The force under a torque of the motor [N].
 static double force_under(const pressed_arm_model *m, pressed_state s, double torque)
 {
-    double friction;
-    if (s.velocity > 0) {
-        friction = m->stiction;
-    } else if (s.velocity < 0) {
-        friction = -m->stiction;
-    } else {
-        friction = 0;
+    double friction = 0;
+    if (s.velocity != 0) {
+        friction = copysign(m->stiction, s.velocity);
     }
-    double viscous = m->viscous * s.velocity, motor = torque - m->damping * s.velocity;
-    motor =
-        smaller(m->current_torque - viscous, larger(-m->current_torque - viscous, motor));
-    double sum = motor - friction - m->stiffness * s.x;
+
+    // of motor and back EMF the current's limit leaves
+    const double viscous = m->viscous * s.velocity, limit = m->current_torque;
+    double motor = torque - m->damping * s.velocity;
+    motor = smaller(limit - viscous, larger(-limit - viscous, motor));
+
+    // f = K x - mu x''
+    const double sum = motor - friction - m->stiffness * s.x;
     return m->spring_force * s.x - m->mass_force * sum / m->inertia;
 }
 
@@ -135,23 +135,26 @@ static double force_on(const pressed_arm_model *m, const way *w, pressed_state s
     return fmin(fmax(wanted, least), most);
 }
 
-static pressed_state rate(const pressed_arm_model *m, const way *w, pressed_state s)
+static pressed_state pressed_rate(const pressed_arm_model *m, const way *w,
+                                  pressed_state s)
 {
     double acceleration = (m->spring_force * s.x - force_on(m, w, s)) / m->mass_force;
     return (pressed_state){s.velocity, acceleration};
 }
 
-static pressed_state ahead(pressed_state s, pressed_state r, double h)
+static pressed_state pressed_ahead(pressed_state s, pressed_state r, double h)
 {
     return (pressed_state){s.x + h * r.x, s.velocity + h * r.velocity};
 }
 
 // One step of the classical Runge-Kutta method.
-static pressed_state advance(const pressed_arm_model *m, const way *w, pressed_state s,
-                             double h)
+static pressed_state pressed_advance(const pressed_arm_model *m, const way *w,
+                                     pressed_state s, double h)
 {
-    pressed_state a = rate(m, w, s), b = rate(m, w, ahead(s, a, h / 2));
-    pressed_state c = rate(m, w, ahead(s, b, h / 2)), d = rate(m, w, ahead(s, c, h));
+    pressed_state a = pressed_rate(m, w, s),
+                  b = pressed_rate(m, w, pressed_ahead(s, a, h / 2));
+    pressed_state c = pressed_rate(m, w, pressed_ahead(s, b, h / 2)),
+                  d = pressed_rate(m, w, pressed_ahead(s, c, h));
     return (pressed_state){
         s.x + h / 6 * (a.x + 2 * b.x + 2 * c.x + d.x),
         s.velocity + h / 6 * (a.velocity + 2 * b.velocity + 2 * c.velocity + d.velocity)};
@@ -166,7 +169,7 @@ static bool stops(const pressed_arm_model *m, pressed_state s, double peak)
         if (m->spring_force * s.x > peak || force_on(m, &brake, s) > peak * (1 + 1e-9)) {
             return false;
         }
-        s = advance(m, &brake, s, COARSE_STEP);
+        s = pressed_advance(m, &brake, s, COARSE_STEP);
     }
     return s.velocity <= 0;
 }
@@ -192,7 +195,7 @@ double best_peak(const pressed_arm_model *m, pressed_state s)
 }
 
 // How far a force is outside the band, negative within [N].
-static double beyond(const way *band, double force)
+static double beyond_band(const way *band, double force)
 {
     return fmax(band->lowest - force, force - band->highest);
 }
@@ -201,30 +204,26 @@ static double beyond(const way *band, double force)
 static bool stays(const pressed_arm_model *m, const way *band, pressed_state s)
 {
     for (double t = 0; t < HOLDING; t += COARSE_STEP) {
-        if (beyond(band, force_on(m, band, s)) > 1e-9 * band->highest) {
+        if (beyond_band(band, force_on(m, band, s)) > 1e-9 * band->highest) {
             return false;
         }
-        s = advance(m, band, s, COARSE_STEP);
+        s = pressed_advance(m, band, s, COARSE_STEP);
     }
-    return beyond(band, runaway(m, s)) < 1e-6 * band->highest;
+    return beyond_band(band, runaway(m, s)) < 1e-6 * band->highest;
 }
 
 // The state at which K xi comes to `edge` within the step from `s` to `next`, a little
-// beyond it;
-// *share: where in the step, -1 if it does not.
+// beyond it; *share: where in the step, -1 if it does not.
 static pressed_state crossing(const pressed_arm_model *m, const way *on, pressed_state s,
                               pressed_state next, double edge, double *share)
 {
-    double before = runaway(m, s) - edge, after = runaway(m, next) - edge;
-    if ((before < 0) != (after < 0)) {
-        *share = before / (before - after);
-    } else {
+    const double before = runaway(m, s) - edge, after = runaway(m, next) - edge;
+    if ((before < 0) == (after < 0)) {
         *share = -1;
-    }
-    if (*share < 0) {
         return next;
     }
-    return advance(m, on, s, *share * STEP + INSIDE);
+    *share = before / (before - after);
+    return pressed_advance(m, on, s, *share * STEP + INSIDE);
 }
 
 // The edge of the band that a way comes to: hard pressing from above, soft from below.
@@ -240,10 +239,15 @@ static double near_edge(const way *on, const way *band)
 // force up to the peak, or leaves the band on its far side.
 static bool is_lost(const way *on, const way *band, double xi, double force)
 {
-    bool hard = on->rule == PRESS_HARD;
-    bool leaves =
-        hard ? xi < band->lowest && force >= xi : xi > band->highest && force <= xi;
-    return xi <= 0 || (xi > band->highest && xi >= on->highest) || leaves;
+    const bool has_left_wall = xi <= 0;
+    const bool runs_away = xi > band->highest && xi >= on->highest;
+    if (has_left_wall || runs_away) {
+        return true;
+    }
+    if (on->rule == PRESS_HARD) {
+        return xi < band->lowest && force >= xi;
+    }
+    return xi > band->highest && force <= xi;
 }
 
 // Time on a way until the force can stay in the band; NaN if it is not below `limit`.
@@ -255,12 +259,12 @@ static double time_on(const pressed_arm_model *m, const way *on, const way *band
         if (is_lost(on, band, xi, force_on(m, on, s))) {
             break;
         }
-        if (beyond(band, xi) <= 0 && stays(m, band, s)) {
+        if (beyond_band(band, xi) <= 0 && stays(m, band, s)) {
             return t;
         }
 
         // on, looking for the edge within the step
-        pressed_state next = advance(m, on, s, STEP);
+        pressed_state next = pressed_advance(m, on, s, STEP);
         pressed_state edge = crossing(m, on, s, next, near_edge(on, band), &share);
         if (share >= 0 && stays(m, band, edge)) {
             return t + share * STEP;
@@ -285,7 +289,7 @@ static double time_on_both(const pressed_arm_model *m, const way *first,
         }
 
         // and from the edge itself, which lies within a step
-        pressed_state next = advance(m, first, s, STEP);
+        pressed_state next = pressed_advance(m, first, s, STEP);
         pressed_state edge = crossing(m, first, s, next, near_edge(first, band), &share);
         if (share >= 0) {
             double at = t + share * STEP;

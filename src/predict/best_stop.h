@@ -5,8 +5,8 @@
 // In contact the two-link arm has one degree of freedom, x = theta2 - theta_imp
 // (docs/explanation/control-design.md):
 //
-//     M x'' = T - D x' - friction - 4 k2 x,     f = (2 k2/l) x - mu x'',    |T| <= Kt
-//     times limit
+//     M x'' = T - D x' - friction - 4 k2 x,     |T| <= Kt times limit
+//     f = (2 k2/l) x - mu x''
 //
 // which is linear: at 0.1 rad the force of the arm itself is some 2 % less.
 #pragma once

@@ -45,18 +45,23 @@ static double listed_energy(const parameters *p, const three_body_state *s)
 // Kinetic and strain energy before contact, (4.23), whole.
 static double whole_energy(const parameters *p, const three_body_state *s)
 {
-    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2,
-           inertia = two_link_inertia(p);
-    bool rigid = p->arm.hub_joint == HUB_RIGID;
+    const double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2;
+    const double inertia = two_link_inertia(p);
     const double *q = s->angle, *w = s->velocity;
-    double bend = q[2] - q[1], hub_bend = rigid ? 0 : q[1] - q[0],
-           hub_speed = w[rigid ? 1 : 0];
-    double kinetic = p->arm.hub_inertia * hub_speed * hub_speed +
-                     (inertia + m * e * e + m * l * l) * w[1] * w[1] +
-                     (inertia + m * e * e) * w[2] * w[2] +
-                     2 * m * l * e * inline_cos(bend) * w[1] * w[2];
-    double strain =
-        p->arm.k2 * bend * bend + (rigid ? 0 : p->arm.k1 * hub_bend * hub_bend);
+
+    // a rigid hub turns with the first link
+    const double bend = q[2] - q[1];
+    double hub_speed = w[0], hub_strain = p->arm.k1 * (q[1] - q[0]) * (q[1] - q[0]);
+    if (p->arm.hub_joint == HUB_RIGID) {
+        hub_speed = w[1];
+        hub_strain = 0;
+    }
+
+    const double kinetic = p->arm.hub_inertia * hub_speed * hub_speed +
+                           (inertia + m * e * e + m * l * l) * w[1] * w[1] +
+                           (inertia + m * e * e) * w[2] * w[2] +
+                           2 * m * l * e * inline_cos(bend) * w[1] * w[2];
+    const double strain = p->arm.k2 * bend * bend + hub_strain;
     return (kinetic + strain) / 2;
 }
 
@@ -64,7 +69,8 @@ static double whole_energy(const parameters *p, const three_body_state *s)
 // against the drive: theta3 - theta2 = -D. With all velocities zero (4.28), (4.29),
 // (4.34) give accelerations and force, where k1 (theta2 - theta1) is replaced by the
 // motor torque, (4.27) without its acceleration term.
-static bool printed_force(const parameters *p, const three_body_state *s, double *force)
+static bool printed_energy_force(const parameters *p, const three_body_state *s,
+                                 double *force)
 {
     two_link t;
     double bend = sqrt(2 * listed_energy(p, s) / p->arm.k2);
@@ -114,7 +120,8 @@ static double share_undamped(const parameters *p, const two_link *t,
 // that does not belong there. With a hub spring its torque k1 D1 drives both links. With
 // a rigid hub hub and first link are one body, driven by the motor less the Coulomb
 // friction that slowed it.
-static bool corrected_force(const parameters *p, const three_body_state *s, double *force)
+static bool corrected_energy_force(const parameters *p, const three_body_state *s,
+                                   double *force)
 {
     two_link t;
     double stiffness[2] = {p->arm.k2, p->arm.k1}, bend[2];
@@ -124,11 +131,14 @@ static bool corrected_force(const parameters *p, const three_body_state *s, doub
     quasi_principle_deflections(rigid ? 1 : 2, stiffness, energy, bend);
     two_link_at(&t, p, FORM_CORRECTED, s->angle[1], s->angle[1] - bend[0]);
 
-    // what drives the links while they are stopped
-    double hub_speed = s->velocity[rigid ? 1 : 0];
-    double friction = p->motor.stiction * ((hub_speed > 0) - (hub_speed < 0));
-    double r[3] = {rigid ? t.motor_torque - friction : p->arm.k1 * bend[1],
-                   p->arm.k2 * bend[0], 0};
+    // what drives the links while they are stopped: the motor, or the hub's spring
+    double drive;
+    if (rigid) {
+        drive = t.motor_torque - p->motor.stiction * sign_of(s->velocity[1]);
+    } else {
+        drive = p->arm.k1 * bend[1];
+    }
+    double r[3] = {drive, p->arm.k2 * bend[0], 0};
     bool solved = two_link_solve(&t, r);
     *force = r[2];
     return solved;
@@ -142,15 +152,19 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     *out = prediction_none();
     TRY(three_body_state_check(s, f));
     double force, after[3], impulse;
-    FAULT_IF(!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
-                 !isfinite(force),
-             f, STATUS_SINGULAR,
+    bool solved;
+    if (printed) {
+        solved = printed_energy_force(p, s, &force);
+    } else {
+        solved = corrected_energy_force(p, s, &force);
+    }
+    FAULT_IF(!solved || !isfinite(force), f, STATUS_SINGULAR,
              "the energy principle has no single force for this state: its system "
              "(4.28), (4.29), (4.34) is singular");
 
     // it holds for an arm that comes near and, corrected, stays on the wall
-    two_link_at(&touch, p, printed ? FORM_LISTED_IMPACT : FORM_CORRECTED, s->angle[1],
-                s->angle[2]);
+    const two_link_form form = printed ? FORM_LISTED_IMPACT : FORM_CORRECTED;
+    two_link_at(&touch, p, form, s->angle[1], s->angle[2]);
     out->force = force;
     out->holds = force > 0 && two_link_approach_speed(&touch, s) >= 0;
     if (!printed) {

@@ -34,10 +34,10 @@ status predict_velocity_jump(const parameters *p, const three_body_state *s,
 // T^2 w / 4 (the trapezoid of its two ends), and the force, rising linearly, has the
 // impulse T f / 2. With x = (T, f, w1), w1 the hub's velocity just after the impact:
 //
-//   E1 = -I1 w1 - k1 T D1 - k1 T^2 (w2 - w1) / 4 - S T + kv T w1 / 2 (4.20) E2 = k1 T D1
-//   + k1 T^2 (w2 - w1) / 4 - B [k2 T D2 + k2 T^2 (w3 - w2) / 4]
-//        - P2 + both T f / 2 (4.21)
-//   E3 = k2 T D2 + k2 T^2 (w3 - w2) / 4 - P3 + last T f / 2 (4.22)
+//     E1 = -I1 w1 - k1 T D1 - k1 T^2 (w2 - w1)/4 - S T + kv T w1/2                (4.20)
+//     E2 = k1 T D1 + k1 T^2 (w2 - w1)/4 - B [k2 T D2 + k2 T^2 (w3 - w2)/4]
+//          - P2 + both T f/2                                                       (4.21)
+//     E3 = k2 T D2 + k2 T^2 (w3 - w2)/4 - P3 + last T f/2                          (4.22)
 //
 // D1, D2 are the bends theta2 - theta1, theta3 - theta2 at contact, S the motor torque
 // less Coulomb friction, P2 = m22 w2 + m23 w3 and P3 = m32 w2 + m33 w3 the momenta after
@@ -58,11 +58,14 @@ typedef struct integrated_motion {
 static void integrate_motion(integrated_motion *g, const parameters *p, const two_link *t,
                              const three_body_state *s, const double after[3])
 {
-    bool printed = p->arm.model == ARM_PRINTED;
-    double speed = s->velocity[t->rigid_hub ? 1 : 0];
+    const bool printed = p->arm.model == ARM_PRINTED;
 
-    // the listing takes the hub to turn forwards
-    double turning = printed ? 1 : (speed > 0) - (speed < 0);
+    // the hub's direction; the listing takes it to turn forwards
+    double turning = 1;
+    if (!printed) {
+        const double speed = t->rigid_hub ? s->velocity[1] : s->velocity[0];
+        turning = sign_of(speed);
+    }
 
     // what (4.20)-(4.22) are made of
     *g = (integrated_motion){
@@ -87,12 +90,14 @@ static void integrate_motion(integrated_motion *g, const parameters *p, const tw
 static void equations(const integrated_motion *g, const double x[3], double e[3],
                       double jacobian[9])
 {
-    double T = x[0], f = x[1], w1 = x[2];
-    double hub_rate = g->k1 * (g->w2 - w1), rate = g->k2 * (g->w3 - g->w2);
-    double hub_spring = T * g->k1 * g->hub_bend + T * T * hub_rate / 4;
-    double spring = T * g->k2 * g->bend + T * T * rate / 4;
-    double hub_slope = g->k1 * g->hub_bend + T * hub_rate / 2;
-    double slope = g->k2 * g->bend + T * rate / 2;
+    const double T = x[0], f = x[1], w1 = x[2];
+
+    // the springs' impulses k T D + k T^2 (change of w)/4, and their slopes by T
+    const double hub_rate = g->k1 * (g->w2 - w1), rate = g->k2 * (g->w3 - g->w2);
+    const double hub_spring = T * g->k1 * g->hub_bend + T * T * hub_rate / 4;
+    const double spring = T * g->k2 * g->bend + T * T * rate / 4;
+    const double hub_slope = g->k1 * g->hub_bend + T * hub_rate / 2;
+    const double slope = g->k2 * g->bend + T * rate / 2;
 
     e[0] = -g->hub_inertia * w1 - hub_spring - g->drive * T + g->hub_damping * T * w1 / 2;
     e[1] = hub_spring - g->twice * spring - g->momentum2 + g->both * T * f / 2;
@@ -192,7 +197,7 @@ static void force_free_terms(const integrated_motion *g, double c[3])
     c[2] = -springs * g->k2 * (g->w3 - g->w2) / 4;
 }
 
-static double length_of(const double x[3])
+static double norm_of(const double x[3])
 {
     return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
@@ -210,7 +215,7 @@ static bool newton(const integrated_motion *g, double x[3])
     // the residual to begin with
     double e[3], jacobian[9], error;
     equations(g, x, e, jacobian);
-    error = length_of(e);
+    error = norm_of(e);
     for (int i = 0; i < ITERATIONS && error > 1e-13 * scale; i++) {
         // the whole step, or as much of it as lowers the residual
         double damping = 1, trial[3], next;
@@ -224,7 +229,7 @@ static bool newton(const integrated_motion *g, double x[3])
                 trial[j] = x[j] - damping * e[j];
             }
             equations(g, trial, trial_e, jacobian);
-            next = length_of(trial_e);
+            next = norm_of(trial_e);
             damping /= 2;
         } while (!(next < error) && damping > 1e-6);
         if (!(next < error)) {
@@ -302,9 +307,12 @@ static double earliest_delay(const double c[3])
 }
 
 // Without a hub spring E1 and E2 are one equation, the balance of the whole arm with w1 =
-// w2:
-// -S T + kv T w2 / 2 - P2 + both T f / 2 = 0, and the system is quadratic in T. So is the
-// printed closed form of an arm with one, whose velocity w1 after the impact is known.
+// w2,
+//
+//     -S T + kv T w2/2 - P2 + both T f/2 = 0
+//
+// and the system is quadratic in T. So is the printed closed form of an arm with one,
+// whose velocity w1 after the impact is known.
 static void solve_quadratic(const integrated_motion *g, bool rigid_hub, double w1,
                             prediction *out)
 {
@@ -320,8 +328,8 @@ static void solve_quadratic(const integrated_motion *g, bool rigid_hub, double w
     out->force = force_of_delay(g, out->delay);
 }
 
-static status predict(const parameters *p, const three_body_state *s, bool closed_form,
-                      prediction *out, fault *f)
+static status predict_by_momentum(const parameters *p, const three_body_state *s,
+                                  bool closed_form, prediction *out, fault *f)
 {
     two_link t;
     integrated_motion g;
@@ -356,7 +364,7 @@ static status predict(const parameters *p, const three_body_state *s, bool close
 status predict_impact_dynamics(const parameters *p, const three_body_state *s,
                                prediction *out, fault *f)
 {
-    return predict(p, s, false, out, f);
+    return predict_by_momentum(p, s, false, out, f);
 }
 
 // Hub and first link jump alike. Printed: w1 = w1(before) + Dw2 is then known, E1 and
@@ -370,5 +378,5 @@ status predict_impact_quadratic(const parameters *p, const three_body_state *s,
     if (p->arm.model != ARM_PRINTED) {
         rigid.arm.hub_joint = HUB_RIGID;
     }
-    return predict(&rigid, s, true, out, f);
+    return predict_by_momentum(&rigid, s, true, out, f);
 }

@@ -48,7 +48,7 @@ static bool flight_of(const parameters *p, flight *f)
     return f->start < 0 && f->torque > 0;
 }
 
-static flight_state rate(const flight *f, const flight_state *s, double torque)
+static flight_state flight_rate(const flight *f, const flight_state *s, double torque)
 {
     const double bend = f->k2 * (s->q[0] - s->q[1]);
     const double hub = torque - f->damping * s->w[0] - bend;
@@ -57,25 +57,25 @@ static flight_state rate(const flight *f, const flight_state *s, double torque)
                            f->inverse[1][0] * hub + f->inverse[1][1] * bend}};
 }
 
-static flight_state ahead(const flight_state *s, const flight_state *r, double h)
+static flight_state flight_ahead(const flight_state *s, const flight_state *r, double h)
 {
     return (flight_state){{s->q[0] + h * r->q[0], s->q[1] + h * r->q[1]},
                           {s->w[0] + h * r->w[0], s->w[1] + h * r->w[1]}};
 }
 
 // Over LEAST_TIME_STEP under a constant torque, by the classical Runge-Kutta method.
-static flight_state advance(const flight *f, flight_state s, double torque)
+static flight_state flight_advance(const flight *f, flight_state s, double torque)
 {
     const double h = LEAST_TIME_STEP / SUBSTEPS;
 
     // four slopes: at the start, twice half way and at the end
     for (int i = 0; i < SUBSTEPS; i++) {
-        flight_state a = rate(f, &s, torque), at = ahead(&s, &a, h / 2);
-        flight_state b = rate(f, &at, torque);
-        at = ahead(&s, &b, h / 2);
-        flight_state c = rate(f, &at, torque);
-        at = ahead(&s, &c, h);
-        flight_state d = rate(f, &at, torque);
+        flight_state a = flight_rate(f, &s, torque), at = flight_ahead(&s, &a, h / 2);
+        flight_state b = flight_rate(f, &at, torque);
+        at = flight_ahead(&s, &b, h / 2);
+        flight_state c = flight_rate(f, &at, torque);
+        at = flight_ahead(&s, &c, h);
+        flight_state d = flight_rate(f, &at, torque);
 
         // their weighted mean
         for (int k = 0; k < 2; k++) {
@@ -86,7 +86,7 @@ static flight_state advance(const flight *f, flight_state s, double torque)
     return s;
 }
 
-static double tip_of(const flight *f, const flight_state *s)
+static double flight_tip(const flight *f, const flight_state *s)
 {
     return f->length * (s->q[0] + s->q[1]);
 }
@@ -127,25 +127,32 @@ static void follow_sign(const flight *f, const responses *r, int n, double weigh
 // halving finds the one with the tip at the wall. False if no torque brings it there.
 static bool find_edge(const flight *f, const responses *r, int n, double sense, edge *e)
 {
-    double way = 0, low = -1, high = 1, tip, press;
+    // all torques forwards may be too little
+    double way = 0, tip, press;
     for (int k = 1; k <= n; k++) {
         way += f->torque * fabs(r->tip[k]);
     }
-    const double start = tip_of(f, &(flight_state){{f->start, f->start}, {0, 0}});
+    const double start = flight_tip(f, &(flight_state){{f->start, f->start}, {0, 0}});
     if (way < -start) {
         return false;
     }
 
-    // weights so large that the tip's share alone decides
+    // weights so large that the tip's share alone decides, and halves between them
+    double high = 1;
     for (int k = 1; k <= n; k++) {
-        double ratio = 2 * fabs(r->press[k]) / fmax(fabs(r->tip[k]), 1e-12);
+        const double ratio = 2 * fabs(r->press[k]) / fmax(fabs(r->tip[k]), 1e-12);
         high = fmax(high, ratio);
-        low = -high;
     }
+    double low = -high;
     for (int i = 0; i < HALVINGS; i++) {
-        double middle = (low + high) / 2;
+        const double middle = (low + high) / 2;
         follow_sign(f, r, n, middle, sense, &tip, &press);
-        *((start + tip > 0) == (sense > 0) ? &low : &high) = middle;
+        const bool beyond = start + tip > 0;
+        if (beyond == (sense > 0)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
 
     // between two weights one step's torque lies between both signs: on the straight line
@@ -153,7 +160,8 @@ static bool find_edge(const flight *f, const responses *r, int n, double sense, 
     double tip_low, press_low;
     follow_sign(f, r, n, low, sense, &tip_low, &press_low);
     follow_sign(f, r, n, high, sense, &tip, &press);
-    double across = tip_low - tip, share = across != 0 ? (-start - tip) / across : 0;
+    const double across = tip_low - tip;
+    double share = across != 0 ? (-start - tip) / across : 0;
     share = fmax(0, fmin(1, share));
     e->press = f->press * f->start + press + share * (press_low - press);
     e->slack = fabs(start + tip + share * across) / -start;
@@ -198,18 +206,22 @@ least_time least_time_of(const parameters *p, double force, double band, double 
     flight_state kicked = {{0, 0}, {0, 0}};
     for (int n = 1; n <= MOST_STEPS && n * LEAST_TIME_STEP < best.total; n++) {
         edge edges[2];
-        kicked = advance(&f, kicked, n == 1 ? 1 : 0);
-        r.tip[n] = tip_of(&f, &kicked);
+        kicked = flight_advance(&f, kicked, n == 1 ? 1 : 0);
+        r.tip[n] = flight_tip(&f, &kicked);
         r.press[n] = press_of(&f, &kicked);
         if (!find_edge(&f, &r, n, -1, &edges[0]) || !find_edge(&f, &r, n, 1, &edges[1])) {
             continue;
         }
 
         // what lies nearest to the band
-        bool largest = edges[1].press < a;
-        const edge *e = &edges[largest];
-        double press = largest ? e->press : fmax(e->press, a);
-        double total = n * LEAST_TIME_STEP + time_to_band(press, a, b, most, s);
+        const bool largest = edges[1].press < a;
+        const edge *e = &edges[0];
+        double press = fmax(e->press, a);
+        if (largest) {
+            e = &edges[1];
+            press = e->press;
+        }
+        const double total = n * LEAST_TIME_STEP + time_to_band(press, a, b, most, s);
         if (total < best.total) {
             best = (least_time){.total = total,
                                 .touch = n * LEAST_TIME_STEP,
@@ -234,8 +246,8 @@ void least_time_follow(const parameters *p, const double *torque, int steps, dou
     flight_state s = {{f.start, f.start}, {0, 0}};
     assert(known);
     for (int k = 0; k < steps && known; k++) {
-        s = advance(&f, s, torque[k]);
+        s = flight_advance(&f, s, torque[k]);
     }
-    *tip = tip_of(&f, &s);
+    *tip = flight_tip(&f, &s);
     *press = press_of(&f, &s);
 }

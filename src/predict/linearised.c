@@ -85,8 +85,8 @@ typedef struct seen_energies {
 } seen_energies;
 
 // The parabola f + slope x + bend x^2 through values at x[0] < 0, at 0 and at x[1].
-static void parabola(const double x[2], double before, double f, double after,
-                     double *slope, double *bend)
+static void fit_parabola(const double x[2], double before, double f, double after,
+                         double *slope, double *bend)
 {
     const double first = (before - f) / x[0], second = (after - f) / x[1];
     *bend = (second - first) / (x[1] - x[0]);
@@ -111,8 +111,8 @@ static void see_energies(const arm *a, motion *m, seen_energies *seen)
     if (x[0] < 0 && x[1] > 0 && at[1].strain > at[0].strain &&
         at[1].strain > at[2].strain) {
         double slope, bend, slope2, bend2;
-        parabola(x, at[0].strain, at[1].strain, at[2].strain, &slope, &bend);
-        parabola(x, at[0].kinetic, at[1].kinetic, at[2].kinetic, &slope2, &bend2);
+        fit_parabola(x, at[0].strain, at[1].strain, at[2].strain, &slope, &bend);
+        fit_parabola(x, at[0].kinetic, at[1].kinetic, at[2].kinetic, &slope2, &bend2);
         const double top = -slope / (2 * bend), strain = at[1].strain + slope / 2 * top;
         if (strain > seen->most.strain) {
             seen->most =
@@ -137,8 +137,8 @@ static double give_commands(arm *a, motion *m, const voltage_profile *command, i
 }
 
 // Puts the arm where it is touched, through the impact. Whether the touch holds.
-static bool touch(const arm *a, motion *m, const double *q, const double *w, double flows,
-                  prediction *out)
+static bool begin_touch(const arm *a, motion *m, const double *q, const double *w,
+                        double flows, prediction *out)
 {
     const double limit = a->motor.current_limit > 0 ? a->motor.current_limit : HUGE_VAL;
     const double current = a->motor.inductance > 0 ? flows : 0;
@@ -154,8 +154,8 @@ static bool touch(const arm *a, motion *m, const double *q, const double *w, dou
 
 // Follows the arm in contact to where that ends, to the horizon, or as far as it can be
 // followed.
-static status follow(arm *a, motion *m, const voltage_profile *command,
-                     seen_energies *seen, prediction *out)
+static status follow_pulse(arm *a, motion *m, const voltage_profile *command,
+                           seen_energies *seen, prediction *out)
 {
     const double settled = SETTLED_FROM * PULSE_HORIZON;
     double before = 0; // the peak then [N]
@@ -215,10 +215,10 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
 
     // numbers only where they are to be relied on
     seen_energies seen = {0};
-    const bool held = touch(&a, m, q, w, given.current, out);
+    const bool held = begin_touch(&a, m, q, w, given.current, out);
     status s = STATUS_OK;
     if (held) {
-        s = follow(&a, m, &given, energies ? &seen : NULL, out);
+        s = follow_pulse(&a, m, &given, energies ? &seen : NULL, out);
     }
     out->holds = held && s == STATUS_OK && !out->doubtful;
     if (out->holds) {
@@ -228,11 +228,12 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
     if (out->holds && energies && m->state[SLOT_CONTACT] == 0) {
         see_energies(&a, m, &seen);
         const double left = motion_energy(&a, m, m->state).kinetic;
+
+        // where no joint stores anything there is no restitution
+        out->restitution = (double)NAN;
         if (seen.most.strain > 0) {
             out->restitution = (left - seen.most.kinetic) / seen.most.strain;
-        } else {
-            out->restitution = (double)NAN;
-        } // no joint stores anything
+        }
     }
     motion_destroy(m);
     return s;
@@ -410,36 +411,38 @@ static bool predict_path(pressed_arm *p, double x, double v, double c, double k,
 static bool path_peak(pressed_arm *p, const pressed_path *path, double first,
                       prediction *out)
 {
-    double h = 0.08 * path->stop, t = path->stop - h, f[4], top;
+    // three instants before the stop, and the top of their parabola
+    const double h = 0.08 * path->stop, middle = path->stop - h;
+    double t = middle, f[4];
     for (int i = 0; i < 3; i++) {
         f[i] = path_force(p, path, path->stop - (2 - i) * h);
     }
-
-    const double middle = t, second = f[0] - 2 * f[1] + f[2],
-                 slope_there = (f[2] - f[0]) / 2;
+    const double second = f[0] - 2 * f[1] + f[2], slope_there = (f[2] - f[0]) / 2;
     if (second < 0) {
         t += fmin(fmax(-slope_there / second, -1), 1) * h;
     }
     f[3] = path_force(p, path, t);
 
     // Newton's form on s = (time - middle) / h with nodes -1, 0, 1 and s3
-    double s3 = (t - middle) / h, d1 = f[1] - f[0], d2 = (f[2] - 2 * f[1] + f[0]) / 2;
-
-    double spread = (s3 + 1) * s3 * (s3 - 1), d3 = 0, s = s3;
+    const double s3 = (t - middle) / h;
+    const double d1 = f[1] - f[0], d2 = (f[2] - 2 * f[1] + f[0]) / 2;
+    const double spread = (s3 + 1) * s3 * (s3 - 1);
+    double d3 = 0;
     if (fabs(spread) > 1e-6) {
         d3 = (f[3] - f[0] - d1 * (s3 + 1) - d2 * (s3 + 1) * s3) / spread;
     }
 
     // Newton's iteration for the cubic's top
+    double s = s3;
     for (int i = 0; i < 3; i++) {
-        double slope = d1 + d2 * (2 * s + 1) + d3 * (3 * s * s - 1),
-               bend = 2 * d2 + 6 * d3 * s;
+        const double slope = d1 + d2 * (2 * s + 1) + d3 * (3 * s * s - 1);
+        const double bend = 2 * d2 + 6 * d3 * s;
         if (bend < 0) {
             s = fmin(fmax(s - slope / bend, -1), 1);
         }
     }
 
-    top = f[0] + (s + 1) * (d1 + s * (d2 + (s - 1) * d3));
+    const double top = f[0] + (s + 1) * (d1 + s * (d2 + (s - 1) * d3));
     out->force = top;
     out->delay = middle + s * h;
     return d2 < 0 && s > -1 && top > first;
@@ -459,7 +462,8 @@ static bool touch_holds(const arm *touched, const double *q, const double *w,
     const double e = wall_restitution(&touched->wall, jump.speed);
     *impulse = (1 + e) * fmax(jump.impulse, 0);
     for (int i = 0; i < 2; i++) {
-        after[i] = w[i] + (*impulse > 0 ? after[i] : 0);
+        const double jump_of_rate = *impulse > 0 ? after[i] : 0;
+        after[i] = w[i] + jump_of_rate;
     }
 
     // an elastic impact throws the arm back

@@ -61,7 +61,10 @@ static double mean_voltage(const prediction_question *question, double time)
 
     // from one change of the command to the next, the last until `time`
     for (int i = 0; i <= command->count; i++) {
-        double to = i < command->count ? fmin(command->times[i], time) : time;
+        double to = time;
+        if (i < command->count) {
+            to = fmin(command->times[i], time);
+        }
         sum += volts * fmax(to - from, 0);
         from = fmax(from, to);
         if (i < command->count && command->times[i] <= time) {
@@ -125,15 +128,18 @@ static prediction_outcome outcome_without(feature_set refused)
     return outcome;
 }
 
-static prediction_outcome ask(predictor which, const prediction_question *question,
-                              prediction *out, fault *f)
+static prediction_outcome ask_predictor(predictor which,
+                                        const prediction_question *question,
+                                        prediction *out, fault *f)
 {
     const parameters *p = question->parameters;
 
     // the thesis's begin with an impact of two bare links
     const bool thesis = which != PREDICTOR_LINEARISED;
-    const feature_set refused =
-        features_of(p) & (thesis ? NOT_OF_THESIS : HAS(MOVES) | HAS(PRINTED));
+    feature_set refused = features_of(p) & (HAS(MOVES) | HAS(PRINTED));
+    if (thesis) {
+        refused = features_of(p) & NOT_OF_THESIS;
+    }
     if (refused != 0) {
         return outcome_without(refused);
     }
@@ -175,7 +181,7 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
                                 .label = texts[which].label,
                                 .short_label = texts[which].short_label,
                                 .fault = {.code = STATUS_OK}};
-    answer.outcome = ask(which, question, &answer.prediction, &answer.fault);
+    answer.outcome = ask_predictor(which, question, &answer.prediction, &answer.fault);
     if (!prediction_known(&answer)) {
         const bool doubtful = answer.prediction.doubtful;
         answer.prediction = prediction_none();
@@ -204,12 +210,16 @@ static void tell_inductance(const prediction_question *question,
         } else {
             answer->prediction.inductance = (double)NAN;
         }
-        if (which != PREDICTOR_LINEARISED && answer->outcome == PREDICTION_HOLDS) {
+        if (which == PREDICTOR_LINEARISED || answer->outcome != PREDICTION_HOLDS) {
+            continue;
+        }
+        if (isnan(change)) {
             decimal_print(answer->note, sizeof answer->note,
-                          isnan(change)
-                              ? "without the motor's inductance"
-                              : "without the motor's inductance, which changes the peak "
-                                "by %.2g N",
+                          "without the motor's inductance");
+        } else {
+            decimal_print(answer->note, sizeof answer->note,
+                          "without the motor's inductance, which changes the peak by "
+                          "%.2g N",
                           change);
         }
     }

@@ -7,6 +7,17 @@
 #include "src/base/dense.h"
 #include "src/base/sincos.h"
 
+double sign_of(double x)
+{
+    if (x > 0) {
+        return 1;
+    }
+    if (x < 0) {
+        return -1;
+    }
+    return 0;
+}
+
 double two_link_inertia(const parameters *p)
 {
     double l = p->arm.length / 2, m = p->arm.mass / 2;
@@ -135,14 +146,17 @@ double two_link_first_force(const two_link *t, const parameters *p,
     // what acts at the hub: its spring, or the motor less friction
     double hub_torque = p->arm.k1 * (s->angle[0] - s->angle[1]);
     if (t->rigid_hub) {
-        double friction = p->motor.stiction * ((w2 > 0) - (w2 < 0));
+        const double friction = p->motor.stiction * sign_of(w2);
         hub_torque = t->motor_torque - t->hub_damping * w2 - friction;
     }
 
     // d2g/dt2 = 0
-    double curve = p->wall.kind == WALL_PLANE
-                       ? l * inline_sin(bend / 2) * (w3 * w3 - w2 * w2)
-                       : l * inline_sin(bend) * (2 * w2 * w3 - w2 * w2);
+    double curve;
+    if (p->wall.kind == WALL_PLANE) {
+        curve = l * inline_sin(bend / 2) * (w3 * w3 - w2 * w2);
+    } else {
+        curve = l * inline_sin(bend) * (2 * w2 * w3 - w2 * w2);
+    }
     double r[3] = {hub_torque + coupling * (w3 * w3 - w2 * w2),
                    -p->arm.k2 * bend - coupling * w2 * w2, curve};
     if (two_link_solve(t, r)) {
@@ -155,11 +169,12 @@ status three_body_state_check(const three_body_state *s, fault *f)
 {
     static const char *const names[3] = {"hub", "first link", "second link"};
     for (int i = 0; i < 3; i++) {
-        FAULT_IF(!isfinite(s->angle[i]) || !isfinite(s->velocity[i]), f,
-                 STATUS_NOT_FINITE,
-                 "a prediction needs a finite state, but the %s's %s is %g", names[i],
-                 isfinite(s->angle[i]) ? "velocity" : "angle",
-                 isfinite(s->angle[i]) ? s->velocity[i] : s->angle[i]);
+        FAULT_IF(!isfinite(s->angle[i]), f, STATUS_NOT_FINITE,
+                 "a prediction needs a finite state, but the %s's angle is %g", names[i],
+                 s->angle[i]);
+        FAULT_IF(!isfinite(s->velocity[i]), f, STATUS_NOT_FINITE,
+                 "a prediction needs a finite state, but the %s's velocity is %g",
+                 names[i], s->velocity[i]);
     }
     return STATUS_OK;
 }

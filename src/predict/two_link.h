@@ -34,6 +34,9 @@ typedef struct two_link {
 void two_link_at(two_link *t, const parameters *p, two_link_form form, double angle2,
                  double angle3);
 
+// 1, -1, or 0 of 0.
+double sign_of(double x);
+
 // Moment of inertia of one of two uniform links about its centre of mass: the parameter
 // where the arm has two links, else that of a uniform rod half as long as the arm [kg
 // m2].

@@ -38,8 +38,12 @@ static status solve_printed_step(printed_motion *m, printed_row *r)
     const double *start = m->row.angle;
     newmark_slopes slopes = {1 / (m->method.beta * h * h),
                              m->method.gamma / (m->method.beta * h)};
-    int n = r->contact ? 4 : 3;
-    double x[4] = {start[0], start[1], start[2], r->contact ? m->newmark_force : 0};
+    double x[4] = {start[0], start[1], start[2], 0};
+    int n = 3;
+    if (r->contact) {
+        x[3] = m->newmark_force;
+        n = 4;
+    }
 
     for (int iteration = 0; iteration < a->switches.newton_iterations; iteration++) {
         double w[3], alpha[3], residual[4], full[4][4], matrix[16], error = 0, change = 0;
@@ -215,8 +219,10 @@ status printed_motion_step(printed_motion *m, fault *f)
     // the equations' own failures
     status result = try_step(m, &r);
     const char *where = r.contact ? "in" : "without";
-    const char *why =
-        result == STATUS_SINGULAR ? "are singular" : "have a residual that is not finite";
+    const char *why = "have a residual that is not finite";
+    if (result == STATUS_SINGULAR) {
+        why = "are singular";
+    }
     FAULT_IF(result != STATUS_OK, f, result,
              "the equations of the step from t = %.9g s %s contact %s", start, where,
              why);

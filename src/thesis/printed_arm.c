@@ -59,18 +59,15 @@ static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
 static void force_levers(const printed_arm *a, const double q[3], double *both,
                          double *last)
 {
-    double l = a->link_length, c = inline_cos(q[2] - q[1]);
-    double reach = wall_along(&a->wall, inline_cos(q[2]),
-                              inline_sin(q[2])); // of the contact point, along link 3
-    if (a->switches.force_at_link_end) {
-        *last = l;
-    } else {
-        *last = reach - l * c;
-    }
+    const double l = a->link_length, c = inline_cos(q[2] - q[1]);
     if (a->switches.force_at_link_end) {
         *both = l + l * c;
+        *last = l;
     } else {
+        // how far along link 3 the contact point lies
+        const double reach = wall_along(&a->wall, inline_cos(q[2]), inline_sin(q[2]));
         *both = reach;
+        *last = reach - l * c;
     }
 }
 
@@ -184,13 +181,17 @@ bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[
     double curvature =
         -wall_right_of(&a->wall, inline_cos(q[2]), inline_sin(q[2])) + l * t.s;
     double cross = 2 * l * t.s * w[1] * w[2];
-    bool listed = a->switches.reevaluation == REEVALUATE_LISTING;
+    double cross_in_matrix = 0, cross_in_vector = cross;
+    if (a->switches.reevaluation == REEVALUATE_LISTING) {
+        cross_in_matrix = cross;
+        cross_in_vector = 0;
+    }
     double matrix[9] = {t.m22,       t.m23,       both, //
                         t.m32,       t.m33,       last, //
-                        gradient[1], gradient[2], listed ? cross : 0.0};
+                        gradient[1], gradient[2], cross_in_matrix};
     double vector[3] = {-residual[1], -residual[2],
                         -l * t.s * w[1] * w[1] - curvature * w[2] * w[2] +
-                            (listed ? 0.0 : cross)};
+                            cross_in_vector};
     if (!dense_solve(3, matrix, vector)) {
         return false;
     }

@@ -7,11 +7,13 @@
 // velocities w[3] [rad/s], accelerations alpha[3] [rad/s2], bend d = theta3 - theta2, f
 // the contact force [N].
 //
-//   R1 = I1 alpha1 - k1 (theta2 - theta1) + kv w1 + kst sgn(w1) - torque (2.15) R2 = k1
-//   (theta2 - theta1) - B k2 d + (m e2 + m l2 + I + m l e cos d) alpha2
-//        + (m e2 + I + m l e cos d) alpha3 - m l e sin d (w3^2 - w2^2) + f r2 (2.16)
-//   R3 = k2 d + m l e cos d alpha2 + (m e2 + I) alpha3 + m l e sin d w2^2 + f r3 (2.17)
-//   R4 = g = a sin theta3 - b cos theta3 - l sin d (3.9)
+//     R1 = I1 alpha1 - k1 (theta2 - theta1) + kv w1 + kst sgn(w1) - torque         (2.15)
+//     R2 = k1 (theta2 - theta1) - B k2 d
+//          + (m e2 + m l2 + I + m l e cos d) alpha2 + (m e2 + I + m l e cos d) alpha3
+//          - m l e sin d (w3^2 - w2^2) + f r2                                      (2.16)
+//     R3 = k2 d + m l e cos d alpha2 + (m e2 + I) alpha3
+//          + m l e sin d w2^2 + f r3                                               (2.17)
+//     R4 = g = a sin theta3 - b cos theta3 - l sin d                               (3.9)
 //
 // with e2 = e^2, l2 = l^2, e the distance of a link's centre of mass from its joint and
 // kv = kfr + kT kB/Ra. (2.16) is the balance of both links together, (2.17) that of the
