@@ -185,7 +185,7 @@ static double most_bend(const arm *a, const motion *m)
 {
     const double *q = state_angles(m, m->state);
     double most = 0;
-    for (int k = 1; k < a->dof && a->stiffening > 0; k++) {
+    for (int k = 1; k < a->dof && a->amount.stiffening > 0; k++) {
         const double bend = (k == a->first ? 2 : 1) * (q[k] - q[k - 1]);
         most = fmax(most, bend * bend);
     }
@@ -204,7 +204,8 @@ static double rate_of_change(const arm *a, const motion *m, double slowest)
                  *al = state_accelerations(m, m->state);
     const double n = a->links, stretched = n * (2 * n - 1);
     double fastest = 0, own = fmax(slowest, 1e-3);
-    own *= sqrt(1 + 3 * a->stiffening * most_bend(a, m)); // slope of b + stiffening b^3
+    own *= sqrt(1 + 3 * a->amount.stiffening *
+                        most_bend(a, m)); // slope of b + stiffening b^3
     for (int i = 0; i < a->dof; i++) {
         double gained = fabs(al[i]) * LONG_RESOLUTION / own;
         fastest = fmax(fastest, fabs(w[i]));

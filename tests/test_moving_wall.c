@@ -79,7 +79,7 @@ TEST(a_rigid_wall_leads_the_tip)
         const double rate = -v / (length * cos(q));
         const double turn =
             -(accelerates - length * sin(q) * rate * rate) / (length * cos(q));
-        const double weight = a.gravity * a.link_mass * length / 2 * cos(q);
+        const double weight = a.amount.gravity * a.link_mass * length / 2 * cos(q);
         check_relative(force, (-weight - inertia * turn) / (length * cos(q)), 1e-6);
     }
 }

@@ -13,10 +13,11 @@ TEST(a_level_beam_sags_as_eulers_does)
 {
     const arm a =
         arm_with(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1e-3"));
-    const double length = a.link_length * LINKS, weight = a.link_mass * LINKS * a.gravity;
+    const double length = a.link_length * LINKS,
+                 weight = a.link_mass * LINKS * a.amount.gravity;
     const double EI = a.joint_stiffness * a.link_length;
     double q[LINKS + 1], x, y, force;
-    check_relative(a.gravity, GRAVITY * sin(1e-3), 1e-14);
+    check_relative(a.amount.gravity, GRAVITY * sin(1e-3), 1e-14);
 
     assert_int_equal(modes_sag(&a, TIP_FREE, q, &force), STATUS_OK);
     chain_node(&a, q, LINKS, &x, &y);
@@ -46,7 +47,7 @@ static void frequencies_of_a_hanging_beam(const arm *a, double *frequency, int c
             const double p = i + 2, r = j + 2, both = p * r, sum = p + r;
             k[i * TERMS + j] =
                 EI / pow(length, 3) * both * (p - 1) * (r - 1) / (sum - 3) +
-                density * a->gravity * both * (1 / (sum - 1) - 1 / sum);
+                density * a->amount.gravity * both * (1 / (sum - 1) - 1 / sum);
             m[i * TERMS + j] = density * length / (sum + 1);
         }
     }

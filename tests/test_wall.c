@@ -1,4 +1,5 @@
 // The wall's geometry against differences of the penetration, and its law of restitution.
+#include "src/arm/forces.h"
 #include "tests/arm_fixture.h"
 
 static wall_model wall_of(const char *const *settings)
@@ -19,13 +20,13 @@ TEST(the_contact_point_lies_the_arms_length_from_the_hub)
 }
 
 // The last link of a moving arm: base, direction, and their rates.
-typedef struct link_motion {
+typedef struct last_link {
     double x, y, vx, vy, ax, ay; // base [m], [m/s], [m/s2]
     double angle, omega, alpha;  // [rad], [rad/s], [rad/s2]
-} link_motion;
+} last_link;
 
 // After a time, with constant accelerations.
-static link_motion after(link_motion l, double t)
+static last_link after(last_link l, double t)
 {
     l.x += t * (l.vx + t * l.ax / 2);
     l.y += t * (l.vy + t * l.ay / 2);
@@ -36,13 +37,13 @@ static link_motion after(link_motion l, double t)
     return l;
 }
 
-static wall_contact contact_of(const wall_model *w, link_motion l)
+static wall_contact contact_of(const wall_model *w, last_link l)
 {
     return wall_contact_at(w, 0.5, l.x, l.y, l.vx, l.vy, cos(l.angle), sin(l.angle),
                            l.omega);
 }
 
-static double rate_of(const wall_model *w, link_motion l)
+static double rate_of(const wall_model *w, last_link l)
 {
     wall_contact at = contact_of(w, l);
     double lever = wall_last_lever(&at, 0.5, cos(l.angle), sin(l.angle));
@@ -51,11 +52,11 @@ static double rate_of(const wall_model *w, link_motion l)
 
 TEST(rates_are_the_derivatives_of_the_penetration)
 {
-    const link_motion now = {0.49, 0.08, -0.3, 0.7, 2, -1.5, 0.25, -1.1, 4};
+    const last_link now = {0.49, 0.08, -0.3, 0.7, 2, -1.5, 0.25, -1.1, 4};
     for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
         wall_model w = wall_of(SETTINGS(*c, "wall.angle=0.2"));
         const double h = 1e-5;
-        link_motion before = after(now, -h), later = after(now, h);
+        last_link before = after(now, -h), later = after(now, h);
         wall_contact at = contact_of(&w, now);
         double slope =
             (contact_of(&w, later).penetration - contact_of(&w, before).penetration);
@@ -73,7 +74,7 @@ TEST(a_straight_arm_at_the_walls_angle_touches_it)
 {
     for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
         wall_model w = wall_of(SETTINGS(*c, "wall.angle=0.3"));
-        link_motion l = {.x = 0.5 * cos(0.3), .y = 0.5 * sin(0.3), .angle = 0.3};
+        last_link l = {.x = 0.5 * cos(0.3), .y = 0.5 * sin(0.3), .angle = 0.3};
         assert_true(wall_stands(&w));
         check_close(contact_of(&w, l).penetration, 0, 1e-15);
         check_close(contact_of(&w, l).lever, 0, 1e-15);
@@ -112,7 +113,7 @@ TEST(a_soft_walls_force_has_its_energy)
         double stored = 0;
         enum { PARTS = 2000 };
         for (int i = 0; i < PARTS; i++) {
-            stored += wall_force(&w, depth * (i + 0.5) / PARTS, 0) * depth / PARTS;
+            stored += wall_normal_force(&w, depth * (i + 0.5) / PARTS, 0) * depth / PARTS;
         }
         check_relative(wall_stored_energy(&w, depth), stored, 1e-6);
         check_close(wall_stored_energy(&w, -depth), 0, 0);
@@ -171,10 +172,11 @@ TEST(a_damper_that_grows_stops_the_mass)
         double depth = begins[i], left = mass * speed;
         const double part = 1e-8;
         for (; left > 0; depth += part) {
-            left -= part * (wall_force(&w, depth + part / 2, 1) -
-                            wall_force(&w, depth + part / 2, 0));
+            left -= part * (wall_normal_force(&w, depth + part / 2, 1) -
+                            wall_normal_force(&w, depth + part / 2, 0));
         }
-        const double damping = wall_force(&w, depth, 1) - wall_force(&w, depth, 0);
+        const double damping =
+            wall_normal_force(&w, depth, 1) - wall_normal_force(&w, depth, 0);
         check_relative(wall_rate(&w, 1 / mass, begins[i], speed), damping / mass, 1e-4);
     }
 }

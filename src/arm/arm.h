@@ -24,6 +24,13 @@ typedef struct arm_link {
     double damping;   // structural, of the joint [N m s/rad]
 } arm_link;
 
+// How much there is of each force of force_list.h, by the name of its law.
+typedef struct force_amounts {
+#define FORCE_AMOUNT(feature, law, ...) double law;
+    FORCE_LIST(FORCE_AMOUNT)
+#undef FORCE_AMOUNT
+} force_amounts;
+
 typedef struct arm {
     feature_set features;   // of the parameters it is made of
     int links;              // N
@@ -38,16 +45,13 @@ typedef struct arm {
     double hub_inertia;     // I1 [kg m2]
     double tip_mass;        // that the tip carries [kg]
     double held_angle;      // initial.angle, at which modes take a hub to be held [rad]
-    double gravity;         // g sin(tilt), along the angle -pi/2 [m/s2]
     double hub_stiffness;   // k1 or k2 N, zero with a rigid hub joint [N m/rad]
     double joint_stiffness; // of each inner joint, k2 N/2, of an uneven arm the largest
                             // [N m/rad]
     double hub_joint_damping; // structural damping of the hub spring [N m s/rad]
     double
         joint_damping; // structural damping of each inner joint or that one [N m s/rad]
-    double stiffening; // share by which a joint stiffens with the square of its bend
-                       // [1/rad2]
-    double air_drag;   // force on the beam per its length and velocity [N s/m2]
+    force_amounts amount;
     int damped_modes;  // how many rows modal_damping has
     motor_model motor; // with the command in force
     wall_model wall;
@@ -67,9 +71,8 @@ typedef struct arm {
 // rest.
 static inline bool arm_is_plain(const arm *a)
 {
-    return !wall_moves(&a->wall) && a->tip_mass == 0 && a->gravity == 0 && !a->uneven &&
-           a->stiffening == 0 && a->air_drag == 0 && a->damped_modes == 0 &&
-           !a->motor.electric;
+    const feature_set more = NOT_OF_PAIR & ~HAS(GIVES);
+    return !wall_moves(&a->wall) && (a->features & more) == 0;
 }
 
 // Link k from the hub, from 0.
@@ -79,19 +82,6 @@ static inline arm_link arm_link_of(const arm *a, int k)
                      : (arm_link){a->link_length, a->link_mass, a->link_inertia,
                                   k > 0 ? a->joint_stiffness : a->hub_stiffness,
                                   k > 0 ? a->joint_damping : a->hub_joint_damping};
-}
-
-// Torque of the joint before it at a bend [rad] beyond its linear one, and the energy it
-// holds there, [N m] and [J]: stiffness x stiffening x bend^3. A hub spring of its own
-// does not stiffen.
-static inline double arm_stiffening_torque(const arm *a, int k, double bend)
-{
-    if (a->stiffening == 0 || (k == 0 && !a->root_bends)) {
-        return 0;
-    }
-    // a root is half a joint: it bends half as far at the same curvature
-    const double share = k == 0 ? 4 * a->stiffening : a->stiffening;
-    return arm_link_of(a, k).stiffness * share * bend * bend * bend;
 }
 
 // Derives the constants from resolved parameters (corrected model); the command is

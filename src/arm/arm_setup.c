@@ -13,9 +13,7 @@
 
 // What a decay counts against a vibration: it dies within a step or two and need not be
 // followed, so that steps may be several times longer.
-#define DECAY_WEIGHT     0.125
-
-#define STANDARD_GRAVITY 9.80665 // [m/s2]
+#define DECAY_WEIGHT 0.125
 
 void arm_set_voltage(arm *a, double volts)
 {
@@ -103,7 +101,7 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     for (int k = 0; k < (int)PARAMETER_LIST_MOST; k++) {
         a.each[k].damping = 0;
     }
-    a.stiffening = a.air_drag = a.gravity = 0;
+    a.amount = (force_amounts){0};
     if (!of_velocities) {
         a.damped_modes = 0;
     }
@@ -185,7 +183,7 @@ static double fastest_decay(const arm *a)
     }
     double hub = a->hub_inertia + arm_link_of(a, 0).mass * reach * reach / 12;
     assert(stiffest > 0 && hub > 0);
-    decay = fmax(decay, a->air_drag * a->link_length / a->link_mass);
+    decay = fmax(decay, a->amount.air_drag * a->link_length / a->link_mass);
     if (a->damped_modes > 0) {
         decay = fmax(decay, 1.05 * largest_eigenvalue(a, true));
     }
@@ -230,6 +228,16 @@ static void set_links(arm *a, const arm_parameters *p)
     }
 }
 
+// The amount of each force of force_list.h.
+static force_amounts amounts_of(const parameters *p)
+{
+    return (force_amounts){
+#define AMOUNT_OF(feature, law, path, amount, methods) .law = amount,
+        FORCE_LIST(AMOUNT_OF)
+#undef AMOUNT_OF
+    };
+}
+
 void arm_init(arm *a, const parameters *p)
 {
     memset(a, 0, offsetof(arm, each)); // the tables behind it have lengths of their own
@@ -253,7 +261,6 @@ void arm_init(arm *a, const parameters *p)
     a->hub_inertia = p->arm.hub_inertia;
     a->tip_mass = p->arm.tip_mass;
     a->held_angle = p->initial.angle;
-    a->gravity = STANDARD_GRAVITY * inline_sin(p->arm.tilt);
     if (a->hub_spring) {
         a->hub_stiffness = p->arm.k1;
     } else {
@@ -261,7 +268,7 @@ void arm_init(arm *a, const parameters *p)
     }
     a->joint_stiffness = p->arm.k2 * a->links / 2;
     set_links(a, &p->arm);
-    a->stiffening = p->arm.stiffening * a->links * a->links / 4;
+    a->amount = amounts_of(p);
     motor_init(&a->motor, &p->motor);
     wall_init(&a->wall, p);
 
@@ -277,7 +284,6 @@ void arm_init(arm *a, const parameters *p)
         }
     }
 
-    a->air_drag = p->arm.air_drag;
     a->damped_modes = modal_damping_rows(a, p->arm.modal_ratios, a->modal_damping);
 
     // how fast it can be

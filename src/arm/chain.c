@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "src/arm/chain_pair.h"
+#include "src/arm/forces.h"
 #include "src/base/sincos.h"
 
 void chain_node(const arm *a, const double *q, int k, double *x, double *y)
@@ -162,13 +163,12 @@ double chain_kinetic_energy(const arm *a, const double *q, const double *w)
 
 double chain_strain_energy(const arm *a, const double *q)
 {
-    double twice = 0;
+    double energy = 0;
     for (int k = 1; k < a->dof; k++) {
-        double bend = q[k] - q[k - 1];
-        twice += arm_link_of(a, k - a->first).stiffness * bend * bend +
-                 arm_stiffening_torque(a, k - a->first, bend) * bend / 2;
+        const force_constants joint = force_constants_of(a, k - a->first);
+        energy += joint_forces(&joint, &a->amount, q[k] - q[k - 1], 0).energy;
     }
-    return twice / 2;
+    return energy;
 }
 
 double chain_weight(const arm *a, int k)
@@ -177,23 +177,23 @@ double chain_weight(const arm *a, int k)
     for (int i = k + 1; i < a->links; i++) {
         mass += arm_link_of(a, i).mass;
     }
-    return a->gravity * mass * arm_link_of(a, k).length;
+    return a->amount.gravity * mass * arm_link_of(a, k).length;
 }
 
 double chain_weight_energy(const arm *a, const double *q)
 {
     double y = 0, moment = 0;
-    for (int k = 0; k < a->links && a->gravity != 0; k++) {
+    for (int k = 0; k < a->links && a->amount.gravity != 0; k++) {
         const double rise = arm_link_of(a, k).length * inline_sin(q[a->first + k]);
         moment += arm_link_of(a, k).mass * (y + rise / 2);
         y += rise;
     }
-    return a->gravity * (moment + a->tip_mass * y);
+    return a->amount.gravity * (moment + a->tip_mass * y);
 }
 
 double chain_stiffened(const arm *a, const double *q)
 {
-    if (a->stiffening == 0) {
+    if (a->amount.stiffening == 0) {
         return 1;
     }
     double most = 0;
@@ -201,5 +201,5 @@ double chain_stiffened(const arm *a, const double *q)
         const double bend = (i == a->first ? 2 : 1) * (q[i] - q[i - 1]);
         most = fmax(most, bend * bend);
     }
-    return sqrt(1 + 4.5 * a->stiffening * most);
+    return sqrt(1 + 4.5 * a->amount.stiffening * most);
 }

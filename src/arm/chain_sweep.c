@@ -5,30 +5,31 @@
 #include <math.h>
 
 #include "src/arm/chain_pair.h"
+#include "src/arm/forces.h"
 #include "src/base/sincos.h"
 
-#define KERNEL static inline __attribute__((always_inline))
-
-// Sums of the rows of the modal damping, g'(bend rates), into sums[damped_modes] [N m
-// s^(1/2)]; the torques are g times them. Returns the power lost [W].
-static double modal_rates(const arm *a, const double *w, double *sums)
+// Sizes of the forces on the shapes of modal damping into sizes[damped_modes]; joint k
+// gets the torque modal_damping[i][k] times that. Returns the power lost [W].
+static double shape_sizes(const arm *a, const double *w, double *sizes)
 {
-    double power = 0;
+    double lost = 0;
     for (int i = 0; i < a->damped_modes; i++) {
-        sums[i] = 0;
+        double rate = 0;
         for (int k = a->first > 0 ? 0 : 1; k < a->links; k++) {
-            sums[i] += a->modal_damping[i][k] * (w[a->first + k] - w[a->first + k - 1]);
+            rate += a->modal_damping[i][k] * (w[a->first + k] - w[a->first + k - 1]);
         }
-        power += sums[i] * sums[i];
+        const shape_force f = shape_forces(rate);
+        sizes[i] = f.size;
+        lost += f.lost;
     }
-    return power;
+    return lost;
 }
 
 // What a sweep is of.
 typedef struct sweep {
     const arm *a;
     chain_link *link;
-    bool gives, face;      // the wall gives; its face has a mass
+    bool face;             // the wall that is touched has a face with a mass
     bool constrained;      // contact ties the tip to wall or face
     bool stuck;            // the hub by friction
     const double *theta;   // angles of the links [rad]
@@ -37,9 +38,10 @@ typedef struct sweep {
     double l_last, vx, vy; // length of the last link [m], velocity of its base [m/s]
     double pressed;        // force of a wall that gives [N]
     double held_back;      // and of the spring behind a face with a mass [N]
+    double along;          // force along the wall [N]
     double hub_joint; // torque of the joint before the first link, else less the motor's
                       // [N m]
-    const double *modal;              // sums of the modal damping's rows
+    const double *shape;              // sizes of the forces on shapes
     double damping_power, wall_power; // lost [W]
 } sweep;
 
@@ -67,29 +69,42 @@ KERNEL void reach_wall(sweep *c)
     }
 }
 
-// The answer of a wall that gives to place and velocity; of one with a mass that of its
-// spring.
-KERNEL void wall_answer(sweep *c)
+// Velocity of the tip, along x and y [m/s].
+KERNEL double tip_vx(const sweep *c)
+{
+    const int last = c->a->links - 1;
+    return c->vx - c->l_last * c->link[last].s * c->omega[last];
+}
+KERNEL double tip_vy(const sweep *c)
+{
+    const int last = c->a->links - 1;
+    return c->vy + c->l_last * c->link[last].c * c->omega[last];
+}
+
+// What a wall that is touched answers to place and velocity; of one whose face has a mass
+// that of the spring behind it.
+KERNEL void press_wall(sweep *c)
 {
     const wall_model *model = &c->a->wall;
     const int last = c->a->links - 1;
+    const double ex = c->wall.ex, ey = c->wall.ey;
     const double lever =
         wall_last_lever(&c->wall, c->l_last, c->link[last].c, c->link[last].s);
-    const double depth = c->wall.penetration;
-    const double rate =
-        wall_penetration_rate(&c->wall, c->vx, c->vy, lever, c->omega[last]) +
-        wall_comes(model, c->wall.ex, c->wall.ey);
+    const wall_meeting at = {.depth = c->wall.penetration,
+                             .rate = wall_penetration_rate(&c->wall, c->vx, c->vy, lever,
+                                                           c->omega[last]) +
+                                     wall_comes(model, ex, ey),
+                             .slip = ey * tip_vx(c) - ex * tip_vy(c) -
+                                     wall_slides(model, ex, ey)};
+
+    const wall_answer f = wall_forces(model, &c->a->amount, &at);
     if (c->face) {
-        c->held_back = wall_force(model, depth, rate);
-        c->wall_power = model->damping * rate * rate;
+        c->held_back = f.normal;
     } else {
-        c->pressed = wall_force(model, depth, rate);
-        // a step tries Kelvin-Voigt's law in front of the wall, too, and loses nothing
-        // there
-        const bool damper = model->law == WALL_KELVIN_VOIGT;
-        c->wall_power = damper ? model->damping * rate * rate
-                               : (c->pressed - wall_spring_force(model, depth)) * rate;
+        c->pressed = f.normal;
     }
+    c->along = f.along;
+    c->wall_power = f.lost;
 }
 
 // The links from one on to the tip, whose accelerations have been eliminated.
@@ -99,35 +114,37 @@ typedef struct beyond {
     double ux2, uy2;             // Q of a unit contact force
     double outer;                // torque of the joint before them
     double root_free, root_unit; // moments on the first link before division
-    double end_x, end_y;         // velocity of the next link's end, where air drags
+    double end_x, end_y;         // velocity of the next link's end
 } beyond;
 
-// Moment of the air on link k, its force into *x and *y.
-KERNEL double drag_moment(sweep *c, int k, double l, beyond *b, double *x, double *y)
+// Forces on link k.
+KERNEL link_force forces_on_link(sweep *c, const force_constants *constants, int k,
+                                 double l, beyond *b)
 {
-    const double air = c->a->air_drag * l, omega = c->omega[k];
     const double cosine = c->link[k].c, sine = c->link[k].s, half = 0.5 * l,
-                 turn = l * omega;
-    const double turning = c->a->air_drag * l * l * l / 12 * omega;
-    *x = air * (b->end_x + half * sine * omega);
-    *y = air * (b->end_y - half * cosine * omega);
-    c->damping_power += (*x * *x + *y * *y) / air + turning * omega;
-    b->end_x += sine * turn;
-    b->end_y -= cosine * turn;
-    return half * (cosine * *y - sine * *x) + turning;
+                 omega = c->omega[k];
+    const link_motion centre = {.vx = b->end_x + half * sine * omega,
+                                .vy = b->end_y - half * cosine * omega,
+                                .turn = omega};
+    link_force f = {0};
+    add_link_forces(constants, &c->a->amount, &centre, &f);
+    c->damping_power += f.lost;
+    b->end_x += sine * l * omega;
+    b->end_y -= cosine * l * omega;
+    return f;
 }
 
 // Torque of the joint before link k at a bend [rad] and its rate [rad/s].
-KERNEL double joint_torque(sweep *c, int k, double bend, double rate)
+KERNEL double joint_torque(sweep *c, const force_constants *constants, int k, double bend,
+                           double rate)
 {
-    const double damping = arm_link_of(c->a, k).damping;
-    double modal = 0;
+    const joint_force f = joint_forces(constants, &c->a->amount, bend, rate);
+    double of_shapes = 0;
     for (int i = 0; i < c->a->damped_modes; i++) {
-        modal += c->a->modal_damping[i][k] * c->modal[i];
+        of_shapes += c->a->modal_damping[i][k] * c->shape[i];
     }
-    c->damping_power += damping * rate * rate;
-    return (arm_link_of(c->a, k).stiffness * bend + damping * rate) +
-           (arm_stiffening_torque(c->a, k, bend) + modal);
+    c->damping_power += f.lost;
+    return f.torque + of_shapes;
 }
 
 // Eliminates the acceleration of link k.
@@ -151,16 +168,20 @@ KERNEL void eliminate(sweep *c, int k, beyond *b)
     }
 
     // the moments on it
-    const double inner = root ? c->hub_joint
-                              : joint_torque(c, k, c->theta[k] - c->theta[k - 1],
-                                             c->omega[k] - c->omega[k - 1]);
-    double moment = b->outer - inner - l * (cosine * fy - sine * fx);
-    double moment2 = 0, drag_x = 0, drag_y = 0;
-    b->outer = inner;
-    moment -= (tip ? c->pressed * c->wall.lever : 0) + half * m * a->gravity * cosine;
-    if (a->air_drag > 0) {
-        moment -= drag_moment(c, k, l, b, &drag_x, &drag_y);
+    const force_constants constants = force_constants_of(a, k);
+    const link_force on_link = forces_on_link(c, &constants, k, l, b);
+    double inner = c->hub_joint;
+    if (!root) {
+        inner = joint_torque(c, &constants, k, c->theta[k] - c->theta[k - 1],
+                             c->omega[k] - c->omega[k - 1]);
     }
+    double moment = b->outer - inner - l * (cosine * fy - sine * fx);
+    double moment2 = 0;
+    b->outer = inner;
+    if (tip) {
+        moment -= c->pressed * c->wall.lever;
+    }
+    moment -= half * (cosine * on_link.y - sine * on_link.x) + on_link.moment;
     if (c->constrained) {
         moment2 = -l * (cosine * b->uy2 - sine * b->ux2) - (tip ? c->wall.lever : 0);
     }
@@ -178,8 +199,8 @@ KERNEL void eliminate(sweep *c, int k, beyond *b)
     if (root) {
         return;
     }
-    b->qx = fx - m * half * w2 * cosine + ux * free + drag_x;
-    b->qy = fy - m * half * w2 * sine + uy * free + m * a->gravity + drag_y;
+    b->qx = fx - m * half * w2 * cosine + ux * free + on_link.x;
+    b->qy = fy - m * half * w2 * sine + uy * free + on_link.y;
     if (c->constrained) {
         b->ux2 += ux * unit;
         b->uy2 += uy * unit;
@@ -251,8 +272,12 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out,
     }
     rate2 += c->face ? comes_faster : 0;
     reaction->force = force;
-    reaction->wall_work =
-        (c->face ? c->held_back : force) * comes; // a face's foundation works
+    reaction->wall_work = -c->along * wall_slides(model, at->ex, at->ey);
+    if (c->face) {
+        reaction->wall_work += c->held_back * comes; // its foundation works
+    } else {
+        reaction->wall_work += force * comes;
+    }
     reaction->wall_power = c->wall_power;
     reaction->gap_acceleration = -rate2;
     reaction->gap = wall_stands(model) ? -at->penetration : HUGE_VAL;
@@ -267,50 +292,54 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
         pair_accelerations(a, q, w, mode, alpha, reaction);
         return;
     }
-    double modal[PARAMETER_MODES_MOST];
+    double shape[PARAMETER_MODES_MOST];
     sweep c = {.a = a,
                .link = work,
                .theta = q + a->first,
                .omega = w + a->first,
-               .modal = modal};
-    c.gives = wall_gives(&a->wall) && wall_stands(&a->wall);
-    c.face = c.gives && wall_has_face(&a->wall);
-    c.constrained = mode.contact && (!c.gives || c.face);
+               .shape = shape};
+    const bool gives = wall_gives(&a->wall) && wall_stands(&a->wall);
+    c.face = gives && wall_has_face(&a->wall);
+    c.constrained = mode.contact && (!gives || c.face);
 
     // a single link on a rigid hub is held by the wall alone; friction has no say
     const bool held = c.constrained && !c.face && a->dof == 1;
     const double sliding = held ? 0 : -mode.friction * a->motor.stiction;
     c.stuck = mode.friction == HUB_STICK && !held;
     reach_wall(&c);
-    if (c.gives && mode.contact) {
-        wall_answer(&c);
+    if (mode.contact) {
+        press_wall(&c);
     }
 
-    // motor, damping and sliding friction at the hub, and the joint there
-    double hub = a->motor.torque - a->motor.damping * w[0] + sliding;
-    reaction->motor_torque = 0;
+    // motor and sliding friction at the hub, and the joint there
+    double current = 0;
     if (a->motor.electric) {
-        reaction->motor_torque =
-            a->motor.torque_constant * motor_current(&a->motor, mode.current, w[0]);
-        hub += reaction->motor_torque;
+        current = motor_current(&a->motor, mode.current, w[0]);
     }
-    c.damping_power = modal_rates(a, w, modal);
+    hub_force motor = {0};
+    add_hub_forces(&a->motor, w[0], current, &motor);
+    double hub = -motor.torque + sliding;
+    c.damping_power = shape_sizes(a, w, shape);
     c.hub_joint = -hub;
     if (a->hub_spring) {
-        c.hub_joint = joint_torque(&c, 0, q[1] - q[0], w[1] - w[0]);
+        const force_constants constants = force_constants_of(a, 0);
+        c.hub_joint = joint_torque(&c, &constants, 0, q[1] - q[0], w[1] - w[0]);
         hub += c.hub_joint;
     }
 
     // tip to hub: eliminate each link's acceleration
-    const chain_link *end = &work[a->links - 1];
+    const force_constants tip = force_constants_of_tip(a);
+    const link_motion tip_moves = {.vx = tip_vx(&c), .vy = tip_vy(&c)};
+    link_force on_tip = {0};
+    add_link_forces(&tip, &a->amount, &tip_moves, &on_tip);
     beyond b = {.pxx = a->tip_mass,
                 .pyy = a->tip_mass,
-                .qx = c.pressed * c.wall.ex,
-                .qy = c.pressed * c.wall.ey + a->tip_mass * a->gravity,
+                .qx = c.pressed * c.wall.ex + c.along * c.wall.ey + on_tip.x,
+                .qy = c.pressed * c.wall.ey - c.along * c.wall.ex + on_tip.y,
                 .ux2 = c.wall.ex,
                 .uy2 = c.wall.ey,
-                .end_x = c.vx - c.l_last * end->s * c.omega[a->links - 1],
-                .end_y = c.vy + c.l_last * end->c * c.omega[a->links - 1]};
+                .end_x = tip_moves.vx,
+                .end_y = tip_moves.vy};
     for (int k = a->links - 1; k >= 0; k--) {
         eliminate(&c, k, &b);
     }
@@ -328,6 +357,7 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
     } else if (c.stuck) {
         reaction->friction = -(b.root_free + reaction->force * b.root_unit);
     }
-    reaction->viscous_power = a->motor.damping * w[0] * w[0];
+    reaction->viscous_power = motor.viscous;
+    reaction->motor_torque = motor.drive;
     reaction->damping_power = c.damping_power;
 }

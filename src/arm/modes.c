@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/arm/chain.h"
+#include "src/arm/forces.h"
 #include "src/base/dense.h"
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
@@ -65,7 +66,7 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
     for (int k = 0; k < n; k++) {
         q[k] = line;
     }
-    if (a->gravity == 0 || size < 1 || (tip == TIP_PINNED && n - a->first < 2)) {
+    if (a->amount.gravity == 0 || size < 1 || (tip == TIP_PINNED && n - a->first < 2)) {
         return STATUS_OK;
     }
     double *matrix = malloc((size_t)(size * (size + 1)) * sizeof *matrix);
@@ -85,9 +86,9 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
                 const int own = k - 1, link = k - a->first;
                 const arm_link is = arm_link_of(a, link);
                 const double bend = q[k] - q[k - 1], s = inline_sin(q[k] - line);
-                const double stiffens = arm_stiffening_torque(a, link, 1);
-                const double torque = (is.stiffness + stiffens * bend * bend) * bend;
-                const double slope = is.stiffness + 3 * stiffens * bend * bend;
+                const force_constants constants = force_constants_of(a, link);
+                const joint_force joint = joint_forces(&constants, &a->amount, bend, 0);
+                const double torque = joint.torque, slope = joint.by_bend;
                 const double weight = chain_weight(a, link) * load / LOADS;
                 const double reach = is.length * inline_cos(q[k] - line);
                 change[own] -= torque + weight * inline_cos(q[k]) + *force * reach;
@@ -142,8 +143,9 @@ static status add_sag(const arm *a, tip_end tip, double *q, double *mass,
             chain_weight(a, link) * inline_sin(q[k]) + force * l * inline_sin(turned);
         if (k > 0) {
             const double bend = q[k] - q[k - 1];
-            add_spring(n, k, 3 * arm_stiffening_torque(a, link, 1) * bend * bend,
-                       stiffness);
+            const force_constants joint = force_constants_of(a, link);
+            const double slope = joint_forces(&joint, &a->amount, bend, 0).by_bend;
+            add_spring(n, k, slope - joint.stiffness, stiffness);
         }
     }
     return code;

@@ -121,6 +121,12 @@ static inline double wall_comes_faster(const wall_model *w, double ex, double ey
     return w->shift.acceleration * (w->cosine * ey - w->sine * ex);
 }
 
+// The velocity of a wall that moves along itself, across e [m/s]; none of a plane.
+static inline double wall_slides(const wall_model *w, double ex, double ey)
+{
+    return w->shift.velocity * (w->sine * ey + w->cosine * ex);
+}
+
 // Whether there is a wall at all.
 static inline bool wall_stands(const wall_model *w)
 {
@@ -143,26 +149,31 @@ static inline bool wall_has_face(const wall_model *w)
 // logarithm.
 static inline double wall_power(const wall_model *w, double depth)
 {
-    return depth <= 0           ? 0
-           : w->exponent == 1.0 ? depth
-           : w->exponent == 1.5 ? depth * sqrt(depth)
-                                : plain_pow(depth, w->exponent);
+    if (depth <= 0) {
+        return 0;
+    }
+    if (w->exponent == 1.0) {
+        return depth;
+    }
+    if (w->exponent == 1.5) {
+        return depth * sqrt(depth);
+    }
+    return plain_pow(depth, w->exponent);
+}
+
+// Its derivative by the depth, from the power itself.
+static inline double wall_power_slope(const wall_model *w, double depth, double power)
+{
+    if (depth <= 0) {
+        return 0;
+    }
+    return w->exponent * power / depth;
 }
 
 // Force of the wall's spring at a depth [N]; none in front of it.
 static inline double wall_spring_force(const wall_model *w, double depth)
 {
     return w->stiffness * wall_power(w, depth);
-}
-
-// Force of the law [N] at a depth [m] and its rate [m/s], negative where it would pull.
-// Smooth also where a step tries it in front of the wall.
-static inline double wall_force(const wall_model *w, double depth, double rate)
-{
-    if (w->law == WALL_KELVIN_VOIGT) {
-        return w->stiffness * depth + w->damping * rate;
-    }
-    return wall_power(w, depth) * (w->stiffness + w->damping * rate);
 }
 
 // Energy that the wall's spring holds at a depth [J].

@@ -55,6 +55,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/arm/forces.h"
 #include "src/arm/impact.h"
 #include "src/contact/locate.h"
 
@@ -85,7 +86,7 @@ static bool face_follows(const arm *a, motion *m)
 {
     const penetration at =
         chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state));
-    const bool follows = wall_force(&a->wall, at.depth, at.rate) >= 0;
+    const bool follows = wall_normal_force(&a->wall, at.depth, at.rate) >= 0;
     if (!follows) {
         leave_face(a, m);
     }

@@ -71,7 +71,7 @@ force_bounds motion_held_forces(const arm *a, const motion *m, double *state)
     const double one = 1, *q = state_angles(m, state),
                  lever = chain_penetration_rate(a, q, &one);
     double weight = 0;
-    if (a->gravity != 0) {
+    if (a->amount.gravity != 0) {
         weight = chain_weight(a, 0) * inline_cos(q[0]);
     }
     const double balanced = (a->motor.torque + state[SLOT_MOTOR_TORQUE] - weight) / lever;
@@ -186,7 +186,8 @@ static double fastest_wall_rate(const arm *a, motion *m, double *state)
 double motion_vibration(const arm *a, motion *m, double *state)
 {
     // most have nothing but their own
-    if (motion_wall_is_rigid(m) && a->stiffening == 0 && a->motor.inductance == 0) {
+    if (motion_wall_is_rigid(m) && a->amount.stiffening == 0 &&
+        a->motor.inductance == 0) {
         return a->highest_frequency;
     }
     const double wall = fastest_wall_rate(a, m, state);

@@ -389,7 +389,7 @@ static inline double motion_wall_energy(const arm *a, const motion *m,
 static inline double motion_held_energy(const arm *a, const motion *m, double *state)
 {
     double weight = 0;
-    if (a->gravity != 0) {
+    if (a->amount.gravity != 0) {
         weight =
             chain_weight_energy(a, state_angles(m, state)) - state[SLOT_START_WEIGHT];
     }

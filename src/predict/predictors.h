@@ -42,8 +42,9 @@ typedef enum predictor {
     X(PREDICTION_STILL_WALL_ONLY, HAS(MOVES), "for a wall at rest only")                 \
     X(PREDICTION_LEVEL_ONLY, HAS(TILTED), "for an arm in a level plane only")            \
     X(PREDICTION_BARE_TIP_ONLY, HAS(TIP_MASS), "for a tip that carries nothing only")    \
-    X(PREDICTION_EQUAL_LINKS_ONLY, HAS(UNLIKE),                                          \
+    X(PREDICTION_EQUAL_LINKS_ONLY, HAS(UNLIKE) | HAS(STIFFENS) | HAS(AIR) | HAS(MODAL),  \
       "for equal links with equal linear joints only")                                   \
+    X(PREDICTION_KNOWN_FORCES_ONLY, LISTED_FORCES, "for the forces that it knows only")  \
     X(PREDICTION_KNOWS_NO_TIME, 0, "knows no time over which a voltage could act")       \
     X(PREDICTION_LINKS_UNKNOWN, 0, "the state of all links is not known")                \
     X(PREDICTION_FAILED, 0, "there is no prediction")

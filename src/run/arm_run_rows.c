@@ -131,7 +131,7 @@ static sample row_of(const arm_run *run, double *state, state_energy has, double
         row.wall_place = wall_motion_at(&a->wall.motion, state[SLOT_TIME]).place;
         row.wall_work = quadrature[QUADRATURE_PUSHED];
     }
-    if (a->gravity != 0) {
+    if (a->amount.gravity != 0) {
         row.weight_energy = chain_weight_energy(a, q);
     }
     recording_add_rig_signals(run->recording, &row);

@@ -4,21 +4,24 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "src/tables/force_list.h"
+
 enum {
-    FEATURE_CORRECTED, // arm.model
+#define FORCE_FEATURE(feature, ...) FEATURE_##feature,
+    FORCE_LIST(FORCE_FEATURE)
+#undef FORCE_FEATURE
+
+        FEATURE_CORRECTED, // arm.model
     FEATURE_PRINTED,
     FEATURE_TWO_LINKS,
     FEATURE_JOINT, // some joint of the beam bends
     FEATURE_BENDS, // that, or the hub's spring
     FEATURE_HUB_SPRING,
     FEATURE_TIP_MASS,
-    FEATURE_TILTED,
-    FEATURE_UNLIKE,  // links or joints differ, stiffen, or are damped by more than
-                     // stiffness
+    FEATURE_UNLIKE,  // links or joints differ
     FEATURE_WALL,    // there is one, and then: it is
     FEATURE_STRUCK,  // met as a rigid body: it does not give, or has a face with a mass
     FEATURE_BOUNCES, // some impact is not plastic
-    FEATURE_GIVES,
     FEATURE_KELVIN_VOIGT,
     FEATURE_HUNT_CROSSLEY,
     FEATURE_MOVES, // the wall, in any way; by a formula; by a file
@@ -29,8 +32,7 @@ enum {
     FEATURE_AMPLIFIED, // motor.amplifier_gain says what a command gives
     FEATURE_DRIVEN,    // commands other than 0 V are possible
     FEATURE_BRAKED,    // by back EMF
-    FEATURE_ELECTRIC,  // the motor's current has an equation of its own,
-    FEATURE_LIMITED,   // and a limit
+    FEATURE_LIMITED,   // the motor's current has a limit
     FEATURE_EVENT,     // method.name
     FEATURE_NEWMARK,
     FEATURE_ALPHA,
@@ -65,16 +67,22 @@ enum {
     FEATURE_TOLD_WALL,
     FEATURE_TOLD_DELAY,
     FEATURE_TOLD_LINKS,
+    FEATURE_COUNT
 };
 
 typedef uint64_t feature_set;
 #define HAS(name) ((feature_set)1 << FEATURE_##name)
+_Static_assert(FEATURE_COUNT <= 64, "a feature has a bit of a feature_set");
+
+// The forces of force_list.h.
+#define FORCE_BIT(feature, ...) | HAS(feature)
+#define LISTED_FORCES           (0 FORCE_LIST(FORCE_BIT))
 
 // What the engine `pair` does not take of two links, and what the thesis's predictors do
-// not.
-#define NOT_OF_PAIR (NOT_OF_THESIS | HAS(ELECTRIC))
-#define NOT_OF_THESIS                                                                    \
-    (HAS(LIMITED) | HAS(GIVES) | HAS(MOVES) | HAS(TILTED) | HAS(TIP_MASS) | HAS(UNLIKE))
+// not, to which a current follows at once.
+#define NOT_OF_PAIR                                                                      \
+    (LISTED_FORCES | HAS(LIMITED) | HAS(MOVES) | HAS(TIP_MASS) | HAS(UNLIKE))
+#define NOT_OF_THESIS (NOT_OF_PAIR & ~HAS(ELECTRIC))
 
 // Whether it takes an arm.
 static inline bool features_suit_pair(feature_set features)

@@ -20,15 +20,13 @@ static feature_set arm_features(const parameters *p)
 {
     const arm_parameters *a = &p->arm;
     const bool joint = a->links > 1 || a->hub_joint == HUB_BEAM;
-    const bool unlike = !parameters_even_links(a) || a->stiffening != 0 ||
-                        a->air_drag != 0 || a->modal_ratios[0] != '\0';
     const feature_set method[] = {HAS(EVENT), HAS(NEWMARK), HAS(ALPHA)};
     return when(a->model == ARM_PRINTED, HAS(PRINTED)) |
            when(a->model != ARM_PRINTED, HAS(CORRECTED)) |
            when(a->links == 2, HAS(TWO_LINKS)) | when(joint, HAS(JOINT) | HAS(BENDS)) |
            when(a->hub_joint == HUB_SPRING, HAS(HUB_SPRING) | HAS(BENDS)) |
-           when(a->tip_mass != 0, HAS(TIP_MASS)) | when(a->tilt != 0, HAS(TILTED)) |
-           when(unlike, HAS(UNLIKE)) |
+           when(a->tip_mass != 0, HAS(TIP_MASS)) |
+           when(!parameters_even_links(a), HAS(UNLIKE)) |
            when(p->printed.reevaluation != REEVALUATE_NONE, HAS(REEVALUATED)) |
            method[p->method.name];
 }
@@ -42,14 +40,12 @@ static feature_set motor_features(const parameters *p)
            when(volts || !IS_SET(p, motor.transconductance), HAS(AMPLIFIED)) |
            when(law || m->voltage != 0, HAS(DRIVEN)) |
            when(volts && m->back_emf > 0, HAS(BRAKED)) |
-           when(m->inductance > 0, HAS(ELECTRIC)) |
-           when(volts && m->current_limit > 0, HAS(ELECTRIC) | HAS(LIMITED));
+           when(volts && m->current_limit > 0, HAS(LIMITED));
 }
 
 static feature_set wall_features(const wall_parameters *w)
 {
-    static const feature_set contact[] = {0, HAS(GIVES) | HAS(KELVIN_VOIGT),
-                                          HAS(GIVES) | HAS(HUNT_CROSSLEY)};
+    static const feature_set contact[] = {0, HAS(KELVIN_VOIGT), HAS(HUNT_CROSSLEY)};
     static const feature_set motion[] = {0, HAS(MOVES) | HAS(MOVES_BY_FORMULA),
                                          HAS(MOVES) | HAS(MOVES_BY_FORMULA),
                                          HAS(MOVES) | HAS(MOVES_BY_FILE)};
@@ -79,10 +75,20 @@ static feature_set rig_features(const parameters *p)
            when(c->jitter > 0 || (noise && !s->ideal), HAS(CHANCE));
 }
 
+static feature_set force_features(const parameters *p)
+{
+    feature_set features = 0;
+#define ADD_FEATURE(feature, law, path, amount, methods)                                 \
+    features |= when((amount) != 0, HAS(feature));
+    FORCE_LIST(ADD_FEATURE)
+#undef ADD_FEATURE
+    return features;
+}
+
 feature_set features_of(const parameters *p)
 {
-    return arm_features(p) | motor_features(p) | wall_features(&p->wall) |
-           rig_features(p);
+    return arm_features(p) | force_features(p) | motor_features(p) |
+           wall_features(&p->wall) | rig_features(p);
 }
 
 // --- which parameters act --------------------------------------------------------------
@@ -98,6 +104,12 @@ typedef struct rule {
 
 #define ONE_LINK "one link has no joint"
 #define NOT_READ "the control law does not use it"
+
+// Parameters of the forces in force_list.h that one method alone has: PATH_OF_FORCE of
+// each.
+#define PATH_OF_EVENT_ONLY(path) path " "
+#define PATH_OF_ANY_METHOD(path)
+#define PATH_OF_FORCE(feature, law, path, amount, methods) PATH_OF_##methods(path)
 
 #define OF_LAWS                                                                          \
     "control.approach_voltage control.k[pv] control.gains control.coefficients "         \
@@ -116,8 +128,8 @@ static const rule rules[] = {
      "arm.link_lengths arm.air_drag arm.stiffening arm.tip_mass arm.tilt "
      "wall.restitution method.rest_speed method.residual_bound",
      HAS(CORRECTED), "the printed model has none", true},
-    {"arm.modal_ratios arm.joint_stiffness arm.link_lengths arm.air_drag "
-     "arm.stiffening motor.inductance wall.contact wall.motion method.engine",
+    {FORCE_LIST(PATH_OF_FORCE) "arm.joint_stiffness arm.link_lengths wall.motion "
+                               "method.engine",
      HAS(EVENT), "it runs with method.name = event only", true},
     {"motor.current_limit", HAS(EVENT) | HAS(CURRENT_DRIVE),
      "under a voltage it runs with method.name = event only", true},
@@ -274,24 +286,59 @@ const char *features_inert(feature_set features, int parameter)
     return NULL;
 }
 
+// Whether a parameter brings a force of force_list.h that does not act with these
+// features.
+static bool brings_no_force(feature_set features, const char *path)
+{
+    static const struct {
+        const char *path;
+        feature_set force;
+    } forces[] = {
+#define FORCE_OF_PATH(feature, law, path, ...) {path, HAS(feature)},
+        FORCE_LIST(FORCE_OF_PATH)
+#undef FORCE_OF_PATH
+    };
+    for (size_t i = 0; i < sizeof forces / sizeof forces[0]; i++) {
+        if (strcmp(forces[i].path, path) == 0) {
+            return (features & forces[i].force) == 0;
+        }
+    }
+    return false;
+}
+
+// Why a parameter may not have another value than its default with these features: half
+// a sentence; NULL if it may.
+static const char *why_refused(feature_set features, int parameter)
+{
+    const rule *broken = rule_not_met(features, parameter);
+    if (broken != NULL && broken->refused) {
+        return broken->why;
+    }
+    if (broken == NULL && brings_no_force(features, parameter_table[parameter].path)) {
+        return "it brings this arm no force";
+    }
+    return NULL;
+}
+
 status features_check(const parameters *p, fault *f)
 {
     // what the law, the script and the choice of an engine have is refused elsewhere
     const feature_set features = features_of(p);
+    parameters other;
+    parameters_defaults(&other, ARM_CORRECTED);
     for (int i = 0; i < parameter_count; i++) {
-        const rule *broken = p->set[i] ? rule_not_met(features, i) : NULL;
-        char value[PARAMETER_TEXT_SIZE], usual[PARAMETER_TEXT_SIZE];
-        if (broken == NULL || !broken->refused) {
+        const char *why = p->set[i] ? why_refused(features, i) : NULL;
+        if (why == NULL) {
             continue;
         }
-        parameters other;
-        parameters_defaults(&other, ARM_CORRECTED);
+
+        char value[PARAMETER_TEXT_SIZE], usual[PARAMETER_TEXT_SIZE];
         parameter_format(p, i, value, sizeof value);
         parameter_format(&other, i, usual, sizeof usual);
         if (strcmp(value, usual) != 0) {
-            return fault_set_at(f, STATUS_BAD_SCENARIO, parameter_table[i].path,
-                                "%s = %s, but %s", parameter_table[i].path, value,
-                                broken->why);
+            const char *path = parameter_table[i].path;
+            return fault_set_at(f, STATUS_BAD_SCENARIO, path, "%s = %s, but %s", path,
+                                value, why);
         }
     }
     return STATUS_OK;

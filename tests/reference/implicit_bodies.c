@@ -127,8 +127,8 @@ static double passive_torques(const simulation *s, const double *q, const double
         const double bend = q[i] - q[i - 1], rate = w[i] - w[i - 1];
         const arm_link link = arm_link_of(a, k);
         // a joint stands for a whole link's bending, a beam's root for half a link's
-        const double share = k > 0           ? a->stiffening
-                             : a->root_bends ? 4 * a->stiffening
+        const double share = k > 0           ? a->amount.stiffening
+                             : a->root_bends ? 4 * a->amount.stiffening
                                              : 0;
         double torque =
             link.stiffness * bend * (1 + share * bend * bend) + link.damping * rate;
@@ -146,14 +146,15 @@ static double passive_torques(const simulation *s, const double *q, const double
     }
     // air: a force against the velocity of each piece of the beam
     double vx = 0, vy = 0, velocity_x[MOST_BODIES], velocity_y[MOST_BODIES];
-    for (int k = 0; k < N && a->air_drag > 0; k++) {
+    for (int k = 0; k < N && a->amount.air_drag > 0; k++) {
         const double l = arm_link_of(s->a, k).length, c = cos(q[f + k]),
                      si = sin(q[f + k]), wk = w[f + k];
         velocity_x[k] = vx - l / 2 * si * wk;
         velocity_y[k] = vy + l / 2 * c * wk;
         vx -= l * si * wk;
         vy += l * c * wk;
-        const double whole = a->air_drag * l, spin = a->air_drag * l * l * l / 12;
+        const double whole = a->amount.air_drag * l,
+                     spin = a->amount.air_drag * l * l * l / 12;
         power += whole * (velocity_x[k] * velocity_x[k] + velocity_y[k] * velocity_y[k]) +
                  spin * wk * wk;
         Q[f + k] -= spin * wk;

@@ -1,5 +1,6 @@
 #include "src/engines/newmark/implicit_newton.h"
 
+#include "src/arm/forces.h"
 #include "src/base/sincos.h"
 
 // Residual quantities of the iterate: forces between the links and node accelerations.
@@ -7,7 +8,7 @@ static void forces_between_links(const arm *a, implicit_sweep *link, const doubl
                                  const double *acceleration, double fx, double fy)
 {
     const double l = a->link_length, m = a->link_mass;
-    double ax = 0, ay = a->gravity; // what weight would take
+    double ax = 0, ay = a->amount.gravity; // what weight would take
 
     // accelerations from hub to tip, then the forces that they need from tip to hub
     for (int k = 0; k < a->links; k++) {
@@ -118,11 +119,12 @@ eliminate_tangent(const arm *a, implicit_sweep *link, int k, implicit_iterate *i
     // the joint's torque, and what it changes with
     double kappa = 0, inner = 0;
     if (first + k > 0) {
-        const double stiffness = k > 0 ? a->joint_stiffness : a->hub_stiffness;
-        const double damping = k > 0 ? a->joint_damping : a->hub_joint_damping;
-        kappa = stiffness + damping * t.gamma;
-        inner = stiffness * (q[first + k] - q[first + k - 1]) +
-                damping * (omega - w[first + k - 1]);
+        const force_constants constants = force_constants_of(a, k);
+        const joint_force joint =
+            joint_forces(&constants, &a->amount, q[first + k] - q[first + k - 1],
+                         omega - w[first + k - 1]);
+        kappa = joint.by_bend + joint.by_rate * t.gamma;
+        inner = joint.torque;
     }
 
     // the balance of torques: residual, and its slope by the angle

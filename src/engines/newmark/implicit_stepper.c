@@ -25,6 +25,7 @@
 // links, was seen to gain energy.
 #include <math.h>
 
+#include "src/arm/forces.h"
 #include "src/engines/newmark/implicit_newton.h"
 #include "src/contact/motion.h"
 
@@ -147,8 +148,8 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
     // powers that the quadratures integrate
     trial[SLOT_VISCOUS_POWER] = a->motor.damping * w[0] * w[0];
     for (int k = 1; k < a->dof; k++) {
-        double bend = w[k] - w[k - 1];
-        power += (k == a->first ? a->hub_joint_damping : a->joint_damping) * bend * bend;
+        const force_constants joint = force_constants_of(a, k - a->first);
+        power += joint_forces(&joint, &a->amount, 0, w[k] - w[k - 1]).lost;
     }
     trial[SLOT_DAMPING_POWER] = power;
 }

@@ -2,6 +2,7 @@
 // processor's vectors (src/engines/meson.build). The derivation stands in stiff_step.h.
 #include <math.h>
 
+#define FORCE_LANES 4
 #include "src/engines/stiff/stiff_sweeps.h"
 
 // --- the tangent -----------------------------------------------------------------------
@@ -52,7 +53,31 @@ KERNEL complex_lanes row_product(const stiff_step *s, const double *row,
 // The middle stage, of which the tangent is.
 enum { HALF = RADAU_MIDDLE / 4, LANE = RADAU_MIDDLE % 4 };
 
-// J there.
+// How the wall answers there: derivatives of its forces, and the direction along it.
+KERNEL void factor_wall(stiff_step *s, complex_lanes g, complex_lanes g2)
+{
+    s->slip_damping = 0;
+    if (s->contact == STIFF_FREE) {
+        return;
+    }
+    const stiff_body *last = &s->body[s->links - 1];
+    if (s->wall->kind == WALL_POINT) {
+        s->along_x = last->c[HALF][LANE];
+        s->along_y = last->s[HALF][LANE];
+    } else {
+        s->along_x = s->wall->cosine;
+        s->along_y = s->wall->sine;
+    }
+
+    const wall_meeting meeting = {-s->gap.half[HALF], -s->rate.half[HALF], all(0)};
+    const wall_answer f = wall_forces(s->wall, s->amount, &meeting);
+    s->slip_damping = f.by_slip[LANE];
+    s->wall_damping = f.by_rate[LANE];
+    s->press = plus(plus(scaled(f.by_depth[LANE], g2), scaled(s->wall_damping, g)),
+                    number(s->wall->face_mass));
+}
+
+// J there, the normal of the wall being (-along_y, along_x).
 KERNEL void find_jacobian(stiff_step *s)
 {
     double x = 0, y = 0;
@@ -64,15 +89,18 @@ KERNEL void find_jacobian(stiff_step *s)
     const stiff_pivot *p = &s->pivot[last];
     x -= s->wall->sine * s->shift[0].half[HALF][LANE];
     y += s->wall->cosine * s->shift[0].half[HALF][LANE];
-    const double l = s->link[last].length;
-    const double c = s->body[last].c[HALF][LANE], sn = s->body[last].s[HALF][LANE];
-    const bool point = s->wall->kind == WALL_POINT;
-    const double ex = point ? -sn : -s->wall->sine, ey = point ? c : s->wall->cosine;
+    const double ex = -s->along_y, ey = s->along_x;
     s->jacobian[0] = 0;
     for (int k = 0; k < last; k++) {
         s->jacobian[s->first + k] = s->pivot[k].lc * ey - s->pivot[k].ls * ex;
     }
-    const double lever = point ? c * (s->wall->x - x) + sn * (s->wall->y - y) - l : 0;
+
+    // a point touches the last link beyond its end
+    double lever = 0;
+    if (s->wall->kind == WALL_POINT) {
+        lever = s->along_x * (s->wall->x - x) + s->along_y * (s->wall->y - y) -
+                s->link[last].length;
+    }
     s->jacobian[s->first + last] = lever + p->lc * ey - p->ls * ex;
     if (s->stuck) {
         s->jacobian[0] = 0;
@@ -82,9 +110,15 @@ KERNEL void find_jacobian(stiff_step *s)
 // The links' rows, from the tip inwards; what they show to the hub, tau of stiff_step.h.
 KERNEL complex_lanes factor_links(stiff_step *s, complex_lanes g, complex_lanes g2)
 {
+    // what the tip carries, and what slips along the wall with it
+    const complex_lanes slip = scaled(s->slip_damping, g);
     complex_lanes pxx = number(s->tip_mass), pxy = number(0), pyy = pxx;
+    pxx = plus(pxx, scaled(s->along_x * s->along_x, slip));
+    pxy = plus(pxy, scaled(s->along_x * s->along_y, slip));
+    pyy = plus(pyy, scaled(s->along_y * s->along_y, slip));
     complex_lanes px = number(0), py = px, tau = px;
-    double carried = s->tip_mass;
+    double carried = s->tip.weight;
+
     for (int k = s->links - 1; k >= 0; k--) {
         const stiff_link *l = &s->link[k];
         const stiff_stage *at = &s->stage[s->first + k];
@@ -92,32 +126,52 @@ KERNEL complex_lanes factor_links(stiff_step *s, complex_lanes g, complex_lanes 
         const double lc = l->length * s->body[k].c[HALF][LANE];
         const double ls = l->length * s->body[k].s[HALF][LANE];
         const double square = 0.25 * l->length * l->length;
+
+        // its mass, and the drag of a link at rest, which counts as a mass of g times
+        // its coefficients
+        link_force on_link = {0};
+        add_link_forces(&l->forces, s->amount, &(link_motion){0}, &on_link);
         complex_lanes mass = number(l->mass), own = number(l->inertia + l->mass * square);
-        if (s->drags) {
-            mass = plus(mass, scaled(l->air, g));
-            own = plus(own, scaled(l->turning + l->air * square, g));
+        if (on_link.by_speed != 0) {
+            mass = plus(mass, scaled(on_link.by_speed, g));
+            own = plus(own, scaled(on_link.by_turn + on_link.by_speed * square, g));
         }
-        own = minus(own, scaled(s->gravity * (carried + 0.5 * l->mass) * ls, g2));
-        carried += l->mass;
+        own = plus(own, scaled(weight_by_angle(&l->forces, carried, ls), g2));
+        carried += l->forces.weight;
+
+        // what the links beyond add
         const complex_lanes ptx = minus(scaled(lc, pxy), scaled(ls, pxx));
         const complex_lanes pty = minus(scaled(lc, pyy), scaled(ls, pxy));
         complex_lanes d = plus(minus(scaled(lc, pty), scaled(ls, ptx)), plus(tau, own));
         d = plus(d, minus(scaled(2 * lc, py), scaled(2 * ls, px)));
         const complex_lanes ux = minus(plus(ptx, px), scaled(0.5 * ls, mass));
         const complex_lanes uy = plus(plus(pty, py), scaled(0.5 * lc, mass));
+
+        // the joint before it
         complex_lanes kappa = number(0);
+        double joint_damping = 0;
         if (s->first + k > 0) {
-            double stiffness = l->stiffness;
-            if (s->stiffens) {
-                const double bend = at->q[HALF][LANE] - at[-1].q[HALF][LANE];
-                stiffness += 3 * l->stiffening * bend * bend;
-            }
-            kappa = plus(scaled(stiffness, g2), scaled(l->damping, g));
+            const joint_force joint =
+                joint_forces(&l->forces, s->amount, at->q[HALF] - at[-1].q[HALF],
+                             at->w[HALF] - at[-1].w[HALF]);
+            joint_damping = joint.by_rate[LANE];
+            kappa = plus(scaled(joint.by_bend[LANE], g2), scaled(joint_damping, g));
         } else {
             tau = d; // the hub's own
         }
         const complex_lanes inv = inverse(plus(d, kappa)), share = times(kappa, inv);
-        *p = (stiff_pivot){ux, uy, inv, kappa, share, lc, ls};
+        *p = (stiff_pivot){ux,
+                           uy,
+                           inv,
+                           kappa,
+                           share,
+                           lc,
+                           ls,
+                           joint_damping,
+                           on_link.by_speed,
+                           on_link.by_turn};
+
+        // what both show to the link before
         if (s->first + k > 0) {
             pxx = plus(minus(pxx, times(ux, times(ux, inv))), mass);
             pxy = minus(pxy, times(ux, times(uy, inv)));
@@ -135,17 +189,20 @@ KERNEL complex_lanes factor_links(stiff_step *s, complex_lanes g, complex_lanes 
 KERNEL void factor_hub(stiff_step *s, complex_lanes g, complex_lanes g2,
                        complex_lanes tau)
 {
-    complex_lanes hub =
-        plus(tau, plus(number(s->hub_inertia), scaled(s->hub_damping, g)));
+    hub_force f = {0};
+    add_hub_forces(s->motor, s->stage[0].w[HALF], s->current.half[HALF], &f);
+    s->hub_damping = f.by_rate;
+
+    // the current answers the hub's rate at once, through its inductance, or not at all
+    const double back_emf = -f.by_current * s->motor->back_emf;
+    complex_lanes hub = plus(tau, plus(number(s->hub_inertia), scaled(f.by_rate, g)));
     if (s->drive == STIFF_FOLLOWS) {
-        const double brakes =
-            s->motor->torque_constant * s->motor->back_emf / s->motor->resistance;
-        hub = plus(hub, scaled(brakes, g));
+        s->hub_damping += back_emf / s->motor->resistance;
+        hub = plus(hub, scaled(back_emf / s->motor->resistance, g));
     } else if (s->drive == STIFF_FLOWS) {
         const complex_lanes slows =
             plus(number(s->motor->inductance), scaled(s->motor->resistance, g));
-        const double brakes = s->motor->torque_constant * s->motor->back_emf;
-        hub = plus(hub, scaled(brakes, times(g2, inverse(slows))));
+        hub = plus(hub, scaled(back_emf, times(g2, inverse(slows))));
     }
     s->hub_inverse = s->stuck ? number(0) : inverse(hub);
     if (s->first == 0) {
@@ -154,7 +211,7 @@ KERNEL void factor_hub(stiff_step *s, complex_lanes g, complex_lanes g2,
 }
 
 // The borders' answers and their equations, the contact's last; eliminated in that order.
-KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
+KERNEL void factor_borders(stiff_step *s, complex_lanes g)
 {
     const int count = stiff_borders(s);
     if (s->contact != STIFF_FREE) {
@@ -168,30 +225,20 @@ KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
         solve_unbordered(s, s->border[b]);
     }
 
-    if (s->contact == STIFF_GIVES) {
-        const double depth = -s->gap.at[RADAU_MIDDLE], rate = -s->rate.at[RADAU_MIDDLE];
-        double stiffness = s->wall->stiffness, damping = s->wall->damping;
-        if (s->wall->law == WALL_HUNT_CROSSLEY) {
-            const double power = wall_power(s->wall, depth);
-            stiffness = depth > 0 ? s->wall->exponent * power / depth *
-                                        (stiffness + damping * rate)
-                                  : 0;
-            damping *= power;
-        }
-        s->wall_damping = damping;
-        s->press = plus(plus(scaled(stiffness, g2), scaled(damping, g)),
-                        number(s->wall->face_mass));
-    }
+    // what each border's equation takes of every border's answer
     for (int i = 0; i < count; i++) {
-        const bool wall = i == s->modes;
+        complex_lanes by = g;
+        double own = 1;
+        if (i == s->modes && s->contact == STIFF_GIVES) {
+            by = s->press;
+        } else if (i == s->modes) {
+            by = number(-1);
+            own = 0;
+        }
         for (int j = 0; j < count; j++) {
             const complex_lanes sum =
                 row_product(s, stiff_border_row(s, i), s->border[j]);
-            const complex_lanes by = !wall                       ? g
-                                     : s->contact == STIFF_GIVES ? s->press
-                                                                 : number(-1);
-            const bool one = i == j && !(wall && s->contact == STIFF_RIGID);
-            s->corner[i][j] = minus(number(one ? 1 : 0), times(by, sum));
+            s->corner[i][j] = minus(number(i == j ? own : 0), times(by, sum));
         }
     }
     for (int p = 0; p < count; p++) {
@@ -209,8 +256,9 @@ KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
 static void factor(stiff_step *s)
 {
     const complex_lanes g = s->g, g2 = times(g, g);
+    factor_wall(s, g, g2);
     factor_hub(s, g, g2, factor_links(s, g, g2));
-    factor_borders(s, g, g2);
+    factor_borders(s, g);
 }
 
 // y of the right side that stands there, with its borders.
@@ -221,9 +269,13 @@ static void solve_bordered(stiff_step *s, const complex_lanes *target)
     solve_unbordered(s, s->y);
     for (int i = 0; i < count; i++) {
         const complex_lanes sum = row_product(s, stiff_border_row(s, i), s->y);
-        x[i] = i < s->modes                ? times(s->g, sum)
-               : s->contact == STIFF_GIVES ? plus(*target, times(s->press, sum))
-                                           : minus(*target, sum);
+        if (i < s->modes) {
+            x[i] = times(s->g, sum);
+        } else if (s->contact == STIFF_GIVES) {
+            x[i] = plus(*target, times(s->press, sum));
+        } else {
+            x[i] = minus(*target, sum);
+        }
     }
     for (int i = 1; i < count; i++) {
         for (int j = 0; j < i; j++) {

@@ -57,20 +57,14 @@ void stiff_set_arm(stiff_integrator *integrator, const arm *a, const motion *m)
     s->first = a->first;
     for (int k = 0; k < a->links; k++) {
         const arm_link own = arm_link_of(a, k);
-        const double air = a->air_drag * own.length;
         s->link[k] = (stiff_link){.length = own.length,
                                   .mass = own.mass,
                                   .inertia = own.inertia,
-                                  .stiffness = own.stiffness,
-                                  .damping = own.damping,
-                                  .stiffening = arm_stiffening_torque(a, k, 1),
-                                  .air = air,
-                                  .turning = air * own.length * own.length / 12};
+                                  .forces = force_constants_of(a, k)};
     }
-    s->stiffens = a->stiffening != 0;
-    s->drags = a->air_drag > 0;
     s->tip_mass = a->tip_mass;
-    s->gravity = a->gravity;
+    s->tip = force_constants_of_tip(a);
+    s->amount = &a->amount;
 
     // damped modes, in the bodies' velocities
     s->modes = a->damped_modes;
@@ -84,8 +78,6 @@ void stiff_set_arm(stiff_integrator *integrator, const arm *a, const motion *m)
 
     // the hub
     s->hub_inertia = a->hub_inertia;
-    s->hub_damping = a->motor.damping;
-    s->torque = a->motor.torque;
     const bool held = now.contact && motion_wall_is_rigid(m) && a->dof == 1;
     s->stuck = now.friction == HUB_STICK && !held;
     if (held) {
@@ -248,36 +240,38 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v,
     // outwards
     double ax = 0, ay = 0, bx = 0, by = 0;
     for (int k = 0; k < s->links; k++) {
-        const stiff_link *l = &s->link[k];
         const stiff_pivot *p = &s->pivot[k];
-        const double a = v[s->first + k], b = x[s->first + k], air = gamma * l->air;
-        fx[k] = l->mass * (ax - 0.5 * p->ls * a) + air * (bx - 0.5 * p->ls * b);
-        fy[k] = l->mass * (ay + 0.5 * p->lc * a) + air * (by + 0.5 * p->lc * b);
+        const double mass = s->link[k].mass, drag = gamma * p->drag;
+        const double a = v[s->first + k], b = x[s->first + k];
+        fx[k] = mass * (ax - 0.5 * p->ls * a) + drag * (bx - 0.5 * p->ls * b);
+        fy[k] = mass * (ay + 0.5 * p->lc * a) + drag * (by + 0.5 * p->lc * b);
         ax -= p->ls * a, ay += p->lc * a;
         bx -= p->ls * b, by += p->lc * b;
     }
 
-    // inwards
-    double tx = s->tip_mass * ax, ty = s->tip_mass * ay, outer = 0;
+    // inwards, from what the tip carries and what slips along the wall with it
+    const double slip = gamma * s->slip_damping * (s->along_x * bx + s->along_y * by);
+    double tx = s->tip_mass * ax + slip * s->along_x;
+    double ty = s->tip_mass * ay + slip * s->along_y, outer = 0;
     for (int k = s->links - 1; k >= 0; k--) {
-        const stiff_link *l = &s->link[k];
         const stiff_pivot *p = &s->pivot[k];
         const int i = s->first + k;
-        const double inner = i > 0 ? gamma * l->damping * (x[i] - x[i - 1]) : 0;
-        out[i] = l->inertia * v[i] + p->lc * (ty + 0.5 * fy[k]) -
-                 p->ls * (tx + 0.5 * fx[k]) + inner - outer + gamma * l->turning * x[i];
+        double inner = 0;
+        if (i > 0) {
+            inner = gamma * p->joint_damping * (x[i] - x[i - 1]);
+        }
+        out[i] = s->link[k].inertia * v[i] + p->lc * (ty + 0.5 * fy[k]) -
+                 p->ls * (tx + 0.5 * fx[k]) + inner - outer + gamma * p->turning * x[i];
         tx += fx[k];
         ty += fy[k];
         outer = inner;
     }
+
+    // the hub, and the borders
     if (s->first > 0) {
         out[0] = -outer;
     }
-    double damping = s->hub_damping;
-    if (s->drive == STIFF_FOLLOWS) {
-        damping += s->motor->torque_constant * s->motor->back_emf / s->motor->resistance;
-    }
-    out[0] += s->hub_inertia * v[0] + gamma * damping * x[0];
+    out[0] += s->hub_inertia * v[0] + gamma * s->hub_damping * x[0];
     for (int i = 0; i < s->modes; i++) {
         const double *g = stiff_border_row(s, i), sum = real_row_product(s, g, x);
         for (int k = 0; k < s->dof; k++) {

@@ -40,6 +40,7 @@
 // that is zero at the stages (index 2).
 #pragma once
 
+#include "src/arm/forces.h"
 #include "src/contact/motion.h"
 #include "src/engines/stiff/stiff_formula.h"
 
@@ -64,9 +65,8 @@ enum { STIFF_STAGE_VALUES = QUADRATURE_COUNT + 3 };
 
 // A link and the joint before it, and the link's direction at the step's start.
 typedef struct stiff_link {
-    double length, mass, inertia;          // [m], [kg], about the centre of mass [kg m2]
-    double stiffness, damping, stiffening; // [N m/rad], [N m s/rad], [N m/rad3]
-    double air, turning;                   // drag [N s/m], [N m s/rad]
+    double length, mass, inertia; // [m], [kg], about the centre of mass [kg m2]
+    force_constants forces;
     double cosine, sine;
 } stiff_link;
 
@@ -84,6 +84,8 @@ typedef struct stiff_body {
 typedef struct stiff_pivot {
     stiff_complex ux, uy, inverse, kappa, share; // share: kappa/pivot
     double lc, ls;                               // l t = (-ls, lc)
+    // its part of D: the joint's, and drag of the link [N m s/rad], [N s/m], [N m s/rad]
+    double joint_damping, drag, turning;
 } stiff_pivot;
 
 // Numbers of the stages and, in the last lane, of the start.
@@ -95,13 +97,14 @@ typedef union stiff_nodes {
 typedef struct stiff_step {
     // the arm, in its contact state
     int links, dof, first, modes;
-    stiff_link *link;                            // [links]
-    const double (*damped)[PARAMETER_LIST_MOST]; // arm.modal_damping
-    double *mode;                                // G [modes][dof]
-    double hub_inertia, hub_damping, torque, friction, tip_mass, gravity;
-    bool stuck, stiffens, drags;
+    stiff_link *link; // [links]
+    double *mode;     // G [modes][dof]
+    double hub_inertia, friction, tip_mass;
+    force_constants tip; // of the forces on what the tip carries
+    bool stuck;
     stiff_wall contact;
     const wall_model *wall;
+    const force_amounts *amount;
     const motor_model *motor;
     stiff_drive drive;
     double limited; // the current held [A]
@@ -128,7 +131,10 @@ typedef struct stiff_step {
     stiff_complex g; // h/root
     stiff_pivot *pivot;
     stiff_complex hub_inverse, press;     // press: of a wall that gives, f/(J y)
+    double hub_damping;                   // of the motor [N m s/rad]
     double wall_damping;                  // of a wall that gives, there [N s/m]
+    double along_x, along_y;              // along the wall
+    double slip_damping;                  // of the force along it [N s/m]
     double *jacobian;                     // J [dof]
     stiff_complex *y;                     // right side, then solution [dof]
     stiff_complex *border[STIFF_BORDERS]; // the contact's last [dof]

@@ -5,11 +5,6 @@
 #include "src/base/sincos.h"
 #include "src/engines/stiff/stiff_step.h"
 
-// Lanes are handed to inline functions of one file only.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-#define KERNEL static inline __attribute__((always_inline))
-
 // A link may turn by the root of this within a step [rad2].
 #define MOST_TURN_SQUARE 0.5
 
@@ -165,37 +160,24 @@ KERNEL void follow_current(stiff_step *s)
     }
 }
 
-// The force of a wall that gives at a depth and its rates, [N].
-KERNEL lanes law(const stiff_step *s, lanes depth, lanes rate, lanes acceleration)
-{
-    const wall_model *w = s->wall;
-    if (w->law == WALL_KELVIN_VOIGT) {
-        return w->stiffness * depth + w->damping * rate + w->face_mass * acceleration;
-    }
-    lanes force;
-    for (int i = 0; i < 4; i++) {
-        force[i] = wall_force(w, depth[i], rate[i]);
-    }
-    return force;
-}
-
 // What the tip of the arm does at the stages: its acceleration, those, velocities and
 // places of the last link's base, and what the arm has lost.
 typedef struct stiff_tip {
-    lanes ax, ay, base_ax, base_ay, base_vx, base_vy, base_x, base_y, lost;
+    lanes ax, ay, vx, vy, base_ax, base_ay, base_vx, base_vy, base_x, base_y, lost;
 } stiff_tip;
 
-// From hub to tip: directions, accelerations, and the forces that they take; weight is
-// what it would take to accelerate all upwards. False where a link turns too far.
+// From hub to tip: directions, accelerations, and what moves the links so against the
+// forces on them; of the moments about their centres, into r, what is no joint's. False
+// where a link turns too far.
 KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip)
 {
     const lanes zero = all(0);
-    lanes ax = zero, ay = all(s->gravity), vx = zero, vy = zero, x = zero, y = zero,
-          lost = zero;
+    lanes ax = zero, ay = zero, vx = zero, vy = zero, x = zero, y = zero, lost = zero;
     within_turn within = all(0) == zero;
+    const force_amounts amount = *s->amount;
     for (int k = 0; k < s->links; k++) {
         const stiff_link *l = &s->link[k];
-        const stiff_stage *g = &s->stage[s->first + k];
+        stiff_stage *g = &s->stage[s->first + k];
         stiff_body *b = &s->body[k];
         const lanes z = g->q[half] - s->q0[s->first + k], w = g->w[half], al = g->a[half];
         const lanes w2 = w * w;
@@ -210,21 +192,24 @@ KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip
         const lanes dx = -l->length * (sn * al + c * w2),
                     dy = l->length * (c * al - sn * w2);
         const lanes dvx = -l->length * sn * w, dvy = l->length * c * w;
-        lanes fx = l->mass * (ax + 0.5 * dx), fy = l->mass * (ay + 0.5 * dy);
-        if (s->drags) {
-            const lanes mx = vx + 0.5 * dvx, my = vy + 0.5 * dvy;
-            fx += l->air * mx;
-            fy += l->air * my;
-            if (account) {
-                lost += l->air * (mx * mx + my * my) + l->turning * w2;
-            }
+
+        // inertia, and the forces on the link
+        const link_motion centre = {vx + 0.5 * dvx, vy + 0.5 * dvy, w};
+        link_force f = {.x = l->mass * (ax + 0.5 * dx),
+                        .y = l->mass * (ay + 0.5 * dy),
+                        .moment = l->inertia * al};
+        add_link_forces(&l->forces, &amount, &centre, &f);
+        if (account) {
+            lost += f.lost;
         }
-        b->fx[half] = fx;
-        b->fy[half] = fy;
+        b->fx[half] = f.x;
+        b->fy[half] = f.y;
+        g->r[half] = f.moment;
+
         ax += dx, ay += dy, vx += dvx, vy += dvy;
         x += l->length * c, y += l->length * sn;
     }
-    tip->ax = ax, tip->ay = ay;
+    tip->ax = ax, tip->ay = ay, tip->vx = vx, tip->vy = vy;
     tip->lost = lost;
     for (int i = 0; i < 4; i++) {
         if (!within[i]) {
@@ -236,7 +221,7 @@ KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip
 
 // How the wall acts at the stages: direction, lever and force.
 typedef struct stiff_contact {
-    lanes ex, ey, lever, force;
+    lanes ex, ey, lever, force, along; // along: against the slip along the wall
 } stiff_contact;
 
 // The wall: gap, rate and force (wall_contact_at of wall.h, for lanes).
@@ -251,7 +236,7 @@ KERNEL stiff_contact press_wall(stiff_step *s, int half, bool account,
     const lanes comes = s->shift[1].half[half];
     const lanes px = tip->base_x - wall->sine * s->shift[0].half[half];
     const lanes py = tip->base_y + wall->cosine * s->shift[0].half[half];
-    stiff_contact at = {all(0), all(0), all(0), all(0)};
+    stiff_contact at = {.lever = all(0)};
     lanes depth, bends; // bends: what velocities add to the depth's second derivative
     if (wall->kind == WALL_POINT) {
         const lanes dx = wall->x - px, dy = wall->y - py;
@@ -275,69 +260,79 @@ KERNEL stiff_contact press_wall(stiff_step *s, int half, bool account,
         at.ex * tip->base_vx + at.ey * tip->base_vy + reach * w + comes * along;
     s->gap.half[half] = -depth;
     s->rate.half[half] = -rate;
-    if (s->contact == STIFF_GIVES) {
-        const lanes rate2 = at.ex * tip->base_ax + at.ey * (tip->base_ay - s->gravity) +
-                            reach * s->stage[s->first + last].a[half] + bends;
-        s->force.half[half] = law(s, depth, rate, rate2);
-    }
     if (s->contact == STIFF_FREE) {
-        s->force.half[half] = all(0);
+        at.force = at.along = s->force.half[half] = all(0);
+        s->wall_lost.half[half] = s->pushed.half[half] = all(0);
+        return at;
+    }
+
+    // what a wall that gives answers, and what a face with a mass takes
+    const lanes slides =
+        s->shift[1].half[half] * (wall->sine * at.ey + wall->cosine * at.ex);
+    const wall_meeting meeting = {depth, rate,
+                                  at.ey * tip->vx - at.ex * tip->vy - slides};
+    const wall_answer answer = wall_forces(wall, s->amount, &meeting);
+    if (s->contact == STIFF_GIVES) {
+        const lanes rate2 = at.ex * tip->base_ax + at.ey * tip->base_ay +
+                            reach * s->stage[s->first + last].a[half] + bends;
+        s->force.half[half] = answer.normal + wall->face_mass * rate2;
     }
     at.force = s->force.half[half];
+    at.along = answer.along;
+
+    // the foundation of a face works on its spring and damper
     if (account) {
-        // on a face its foundation's work, by spring and damper
         const bool face = s->contact == STIFF_GIVES && wall->face_mass > 0;
-        const lanes by = face ? wall->stiffness * depth + wall->damping * rate : at.force;
-        s->pushed.half[half] = by * comes * along;
-        s->wall_lost.half[half] = all(0);
-    }
-    if (account && s->contact == STIFF_GIVES) {
-        lanes power = wall->damping * rate * rate;
-        for (int i = 0; i < 4 && wall->law == WALL_HUNT_CROSSLEY; i++) {
-            power[i] = (at.force[i] - wall_spring_force(wall, depth[i])) * rate[i];
+        lanes by = at.force;
+        if (face) {
+            by = answer.normal;
         }
-        s->wall_lost.half[half] = power;
+        s->pushed.half[half] = by * comes * along - at.along * slides;
+        s->wall_lost.half[half] = answer.lost;
     }
     return at;
 }
 
-// From tip to hub: forces, and what each link's equation lacks; `sum` are those of damped
-// modes. Returns the torque of the joint at the hub, 0 of a rigid one.
+// From tip to hub: forces, and what each link's equation lacks; `size` is that of the
+// forces on shapes. Returns the torque of the joint at the hub, 0 of a rigid one.
 KERNEL lanes sweep_inwards(stiff_step *s, int half, bool account, const stiff_contact *at,
-                           const lanes *sum, stiff_tip *tip)
+                           const lanes *size, stiff_tip *tip)
 {
     const int last = s->links - 1;
-    lanes fx = s->tip_mass * tip->ax + at->force * at->ex;
-    lanes fy = s->tip_mass * tip->ay + at->force * at->ey, outer = all(0);
+    const force_amounts amount = *s->amount;
+    const link_motion tip_moves = {tip->vx, tip->vy, all(0)};
+    link_force end = {.x = s->tip_mass * tip->ax + at->force * at->ex,
+                      .y = s->tip_mass * tip->ay + at->force * at->ey};
+    add_link_forces(&s->tip, &amount, &tip_moves, &end);
+    lanes fx = end.x + at->along * at->ey, fy = end.y - at->along * at->ex;
+    lanes outer = all(0);
     for (int k = last; k >= 0; k--) {
         const stiff_link *l = &s->link[k];
         const stiff_body *b = &s->body[k];
         stiff_stage *g = &s->stage[s->first + k];
         const lanes hx = l->length * (fx + 0.5 * b->fx[half]);
         const lanes hy = l->length * (fy + 0.5 * b->fy[half]);
+
+        // the joint before it
         lanes inner = all(0);
         if (k + s->first > 0) {
             const stiff_stage *before = g - 1;
-            const lanes bend = g->q[half] - before->q[half],
-                        rate = g->w[half] - before->w[half];
-            inner = l->stiffness * bend + l->damping * rate;
-            if (s->stiffens) {
-                inner += l->stiffening * bend * bend * bend;
-            }
+            const joint_force joint =
+                joint_forces(&l->forces, &amount, g->q[half] - before->q[half],
+                             g->w[half] - before->w[half]);
+            inner = joint.torque;
             if (account) {
-                tip->lost += l->damping * rate * rate;
+                tip->lost += joint.lost;
             }
         }
-        lanes r =
-            l->inertia * g->a[half] + b->c[half] * hy - b->s[half] * hx - outer + inner;
-        if (s->drags) {
-            r += l->turning * g->w[half];
-        }
+
+        // the balance of moments about its base
+        lanes r = g->r[half] + b->c[half] * hy - b->s[half] * hx - outer + inner;
         if (k == last) {
             r += at->force * at->lever;
         }
         for (int i = 0; i < s->modes; i++) {
-            r += s->mode[i * s->dof + s->first + k] * sum[i];
+            r += s->mode[i * s->dof + s->first + k] * size[i];
         }
         g->r[half] = r;
         fx += b->fx[half];
@@ -354,43 +349,40 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
     if (!sweep_outwards(s, half, account, &tip)) {
         return false;
     }
-    stiff_contact at = {zero, zero, zero, zero};
+    stiff_contact at = {zero, zero, zero, zero, zero};
     if (wall_stands(s->wall)) {
         at = press_wall(s, half, account, &tip);
     }
 
-    // damped modes: sums of the bends' rates
-    lanes sum[PARAMETER_MODES_MOST];
+    // forces on shapes, by the bends' rates
+    lanes size[PARAMETER_MODES_MOST];
     for (int i = 0; i < s->modes; i++) {
-        sum[i] = zero;
+        lanes rate = zero;
         for (int k = 0; k < s->dof; k++) {
-            sum[i] += s->mode[i * s->dof + k] * s->stage[k].w[half];
+            rate += s->mode[i * s->dof + k] * s->stage[k].w[half];
         }
+        const shape_force f = shape_forces(rate);
+        size[i] = f.size;
         if (account) {
-            tip.lost += sum[i] * sum[i];
+            tip.lost += f.lost;
         }
     }
-    const lanes outer = sweep_inwards(s, half, account, &at, sum, &tip);
+    const lanes outer = sweep_inwards(s, half, account, &at, size, &tip);
 
     // the hub
     stiff_stage *hub = &s->stage[0];
-    lanes r = s->first > 0 ? -outer : hub->r[half];
-    r += s->hub_inertia * hub->a[half] + s->hub_damping * hub->w[half] - s->torque;
+    hub_force f = {.torque = s->hub_inertia * hub->a[half]};
+    add_hub_forces(s->motor, hub->w[half], s->current.half[half], &f);
+    lanes r = f.torque + (s->first > 0 ? -outer : hub->r[half]);
     for (int i = 0; i < s->modes && s->first > 0; i++) {
-        r += s->mode[i * s->dof] * sum[i];
-    }
-    if (s->drive != STIFF_DIRECT) {
-        r -= s->motor->torque_constant * s->current.half[half];
+        r += s->mode[i * s->dof] * size[i];
     }
     hub->r[half] = s->stuck ? zero : r + s->friction;
     if (account) {
         s->hold.half[half] = r;
         s->lost.half[half] = tip.lost;
-        s->viscous.half[half] = s->hub_damping * hub->w[half] * hub->w[half];
-        if (s->drive != STIFF_DIRECT) {
-            s->electric.half[half] =
-                s->motor->torque_constant * s->current.half[half] * hub->w[half];
-        }
+        s->viscous.half[half] = f.viscous;
+        s->electric.half[half] = f.drive * hub->w[half];
     }
     return true;
 }
