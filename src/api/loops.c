@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "src/api/handles.h"
-#include "src/base/numbers.h"
 
 int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handle,
                           int flags, impactlab_error *error)
@@ -104,19 +103,17 @@ int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double valu
                              impactlab_error *error)
 {
     API_NEEDS(error, loop, path);
-    char number[NUMBER_TEXT], room[PARAMETER_TEXT_SIZE];
-    const char *text = number;
-    number_format_short(number, value);
-    const int index = api_parameter(path, &text, room, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
-    }
+    sweep_axis axis;
+    TRY((status)api_axis(path, &axis, error));
+
+    // one number of control.settings by its name
     fault f = {.text = "", .path = ""};
+    const char *name = settings_name(path);
     status code;
-    if (text != number) {
-        code = loop_set_text(loop->loop, index, text, &f);
+    if (name != NULL) {
+        code = loop_set_setting(loop->loop, name, value, &f);
     } else {
-        code = loop_set_number(loop->loop, index, value, &f);
+        code = loop_set_number(loop->loop, axis.parameter, value, &f);
     }
     if (code != STATUS_OK) {
         return api_error(error, &f);

@@ -13,8 +13,10 @@
 static json_t *parameter_value(const parameters *p, int index)
 {
     const parameter_info *info = &parameter_table[index];
-    char text[PARAMETER_TEXT_SIZE];
-    double numbers[PARAMETER_LIST_MOST];
+    if (info->type == PARAMETER_LIST) {
+        double numbers[PARAMETER_LIST_MOST];
+        return json_numbers(numbers, parameter_get_list(p, index, numbers));
+    }
     if (info->type != PARAMETER_CHOICE && !parameter_is_text(info)) {
         const double value = parameter_get(p, index);
         if (info->type == PARAMETER_BOOLEAN) {
@@ -22,10 +24,10 @@ static json_t *parameter_value(const parameters *p, int index)
         }
         return json_number(value);
     }
+
+    // words and texts as a scenario file would have them
+    char text[PARAMETER_TEXT_SIZE];
     parameter_format(p, index, text, sizeof text);
-    if (info->type == PARAMETER_LIST) {
-        return json_numbers(numbers, parameter_list_numbers(text, numbers));
-    }
     return json_text(text);
 }
 

@@ -251,6 +251,16 @@ status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
     return act(l, &todo, f);
 }
 
+status loop_set_setting(run_loop *l, const char *name, double value, fault *f)
+{
+    action todo = {.time = loop_time(l),
+                   .kind = ACTION_SET,
+                   .parameter = PARAMETER_INDEX(control.settings),
+                   .value = value};
+    snprintf(todo.text, sizeof todo.text, ".%s", name);
+    return act(l, &todo, f);
+}
+
 status loop_push(run_loop *l, double impulse, fault *f)
 {
     assert(isfinite(impulse));

@@ -53,6 +53,8 @@ void loop_command(run_loop *l, double volts);
 // Gives a parameter that may change during a run another value, now.
 status loop_set_number(run_loop *l, int parameter, double value, fault *f);
 status loop_set_text(run_loop *l, int parameter, const char *text, fault *f);
+// The same of one number of control.settings.
+status loop_set_setting(run_loop *l, const char *name, double value, fault *f);
 // An impulse at the tip, across the last link, now [N s]. STATUS_BAD_ARGUMENT for the
 // printed model, which takes none.
 status loop_push(run_loop *l, double impulse, fault *f);

@@ -26,20 +26,17 @@ static bool is_setting(const action *a)
 
 action action_of(double time, const parameters *p, int parameter, const char *text)
 {
-    action a = {.time = time, .kind = ACTION_SET, .parameter = parameter};
-    a.value = parameter_get(p, parameter);
-    if (parameter_is_text(&parameter_table[parameter])) {
-        parameter_format(p, parameter, a.text, sizeof a.text);
-    }
+    action a = {.time = time,
+                .kind = ACTION_SET,
+                .parameter = parameter,
+                .value = parameter_get(p, parameter)};
 
     // one of the settings stays one, whatever the others will be
     if (parameter == PARAMETER_INDEX(control.settings) && text[0] == '.') {
-        char name[PARAMETER_TEXT_SIZE], number[NUMBER_TEXT];
-        snprintf(name, sizeof name, "%.*s", (int)strcspn(text + 1, "="), text + 1);
-        settings_get(p, name, &a.value);
-        number_format_short(number, a.value);
-        snprintf(a.text, sizeof a.text, ".%.*s=%s", PARAMETER_TEXT_SIZE - NUMBER_TEXT - 3,
-                 name, number);
+        snprintf(a.text, sizeof a.text, "%.*s", (int)strcspn(text, "="), text);
+        settings_get(p, a.text + 1, &a.value);
+    } else if (parameter_is_text(&parameter_table[parameter])) {
+        parameter_format(p, parameter, a.text, sizeof a.text);
     }
     return a;
 }
@@ -47,8 +44,8 @@ action action_of(double time, const parameters *p, int parameter, const char *te
 const char *action_path(const action *a, char path[ACTION_PATH])
 {
     assert(a->kind == ACTION_SET);
-    snprintf(path, ACTION_PATH, "%s%.*s", parameter_table[a->parameter].path,
-             is_setting(a) ? (int)strcspn(a->text, "=") : 0, a->text);
+    const char *name = is_setting(a) ? a->text : "";
+    snprintf(path, ACTION_PATH, "%s%s", parameter_table[a->parameter].path, name);
     return path;
 }
 
@@ -58,35 +55,43 @@ bool action_is_text(const action *a)
     return parameter_is_text(&parameter_table[a->parameter]) && !is_setting(a);
 }
 
-status action_apply(const action *a, parameters *p, fault *f)
+status action_give(const action *a, parameters *p, fault *f)
 {
-    // other actions change no parameter
     if (a->kind != ACTION_SET) {
         return STATUS_OK;
+    }
+    if (is_setting(a)) {
+        return settings_set(p, a->text + 1, a->value, f);
     }
     if (parameter_is_text(&parameter_table[a->parameter])) {
         return parameter_set_text(p, a->parameter, a->text, f);
     }
+    return parameter_set_number(p, a->parameter, a->value, f);
+}
 
-    // a number may change others with it
-    TRY(parameter_set_number(p, a->parameter, a->value, f));
-    parameters_follow(p, a->parameter);
+status action_apply(const action *a, parameters *p, fault *f)
+{
+    TRY(action_give(a, p, f));
+    if (a->kind == ACTION_SET) {
+        parameters_follow(p, a->parameter);
+    }
     return STATUS_OK;
 }
 
 void action_format_value(const action *a, char *text, size_t size)
 {
     assert(a->kind == ACTION_SET && size > 0);
-
     if (is_setting(a)) {
-        snprintf(text, size, "%s", strchr(a->text, '=') + 1);
+        char number[NUMBER_TEXT];
+        number_format_short(number, a->value);
+        snprintf(text, size, "%s", number);
         return;
     }
 
     // by way of a parameter, so that it reads as in a scenario file
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
-    action_apply(a, &p, NULL);
+    action_give(a, &p, NULL);
     parameter_format(&p, a->parameter, text, size);
 }
 

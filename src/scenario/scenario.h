@@ -68,8 +68,7 @@ typedef struct action {
     double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the
                    // last link, positive towards growing angle [N s]
     char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new
-                                    // value; of one of control.settings ".NAME=VALUE",
-                                    // and `value`
+                                    // value; of one number of control.settings ".NAME"
     bool added;                     // not of the scenario's file
     int line;                       // in that file, from 1; 0: none
 } action;
@@ -115,14 +114,19 @@ typedef struct scenario {
 // Inserts an action behind those that are not later. s->actions has room for it.
 void scenario_insert_action(scenario *s, action a);
 
-// The ACTION_SET that gives a parameter the value it has in p, which a text gave it.
+// The ACTION_SET that gives a parameter the value it has in p. `text` gave it that value:
+// where it is ".NAME=VALUE", the action sets that number of control.settings alone.
 action action_of(double time, const parameters *p, int parameter, const char *text);
 // The path that it sets, of one of control.settings with its NAME.
 const char *action_path(const action *a, char path[ACTION_PATH]);
 // Whether its value is a text, not a number.
 bool action_is_text(const action *a);
 
-// Sets the parameter of an ACTION_SET; other actions change none.
+// Gives the parameter of an ACTION_SET its value, in parameters that are yet to be
+// resolved; other actions change none.
+status action_give(const action *a, parameters *p, fault *f);
+
+// The same in resolved parameters: what depends on the parameter follows it.
 status action_apply(const action *a, parameters *p, fault *f);
 // The value that an ACTION_SET gives, as a scenario file would have it.
 void action_format_value(const action *a, char *text, size_t size);

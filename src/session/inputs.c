@@ -101,40 +101,48 @@ static status set_given(parameters *p, int parameter, given_value v, fault *f)
     return parameter_set_number(p, parameter, v.number, f);
 }
 
+// Begins an input that gives a parameter another value at the cursor: from when on, and
+// what it is until then. *now are the parameters there.
+static status begin_input(const session *s, int parameter, session_input *in,
+                          parameters *now, fault *f)
+{
+    assert(parameter >= 0 && parameter < parameter_count);
+    *now = session_parameters_at(s, s->now);
+    *in = (session_input){.kind = SESSION_INPUT_START,
+                          .time = s->now,
+                          .parameter = parameter,
+                          .before = (double)NAN};
+    remember_cursor(s, in);
+    if (!parameter_is_text(&parameter_table[parameter])) {
+        in->before = parameter_get(now, parameter);
+    }
+
+    // during the run, if it may change there
+    if (s->now > 0 && rig_can_change(&s->effective.parameters, parameter)) {
+        in->kind = SESSION_INPUT_TIMED;
+        in->time = effect_time(s);
+        return parameter_may_change(now, parameter, f);
+    }
+    return STATUS_OK;
+}
+
 // Gives a parameter a value from the cursor on, or from the start; see session_change.
 static status change(session *s, int parameter, given_value v, fault *f)
 {
-    assert(parameter >= 0 && parameter < parameter_count);
-    session_input in = {.kind = SESSION_INPUT_START,
-                        .time = effect_time(s),
-                        .parameter = parameter};
-    remember_cursor(s, &in);
-    const parameter_info *info = &parameter_table[parameter];
+    session_input in;
+    parameters now;
     FAULT_IF(v.text != NULL && strlen(v.text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT,
-             "the value of %s is too long", info->path);
-
-    // from the cursor on, if the parameter may change during a run
-    parameters scratch = session_parameters_at(s, s->now);
-    if (parameter_is_text(info)) {
-        in.before = (double)NAN;
-    } else {
-        in.before = parameter_get(&scratch, parameter);
-    }
-    if (rig_can_change(&s->effective.parameters, parameter) && s->now > 0) {
-        TRY(parameter_may_change(&scratch, parameter, f));
-        in.kind = SESSION_INPUT_TIMED;
-    } else {
-        in.time = s->now;
-    }
+             "the value of %s is too long", parameter_table[parameter].path);
+    TRY(begin_input(s, parameter, &in, &now, f));
 
     // the value, and how it is written
-    TRY(set_given(&scratch, parameter, v, f));
-    in.value = parameter_get(&scratch, parameter);
+    TRY(set_given(&now, parameter, v, f));
     if (v.text != NULL) {
         snprintf(in.text, sizeof in.text, "%s", v.text);
     } else {
-        parameter_format(&scratch, parameter, in.text, sizeof in.text);
+        parameter_format(&now, parameter, in.text, sizeof in.text);
     }
+    session_input_take(&in, &now);
     return add_input(s, &in, f);
 }
 
@@ -148,11 +156,18 @@ status session_change_number(session *s, int parameter, double value, fault *f)
     return change(s, parameter, (given_value){.number = value}, f);
 }
 
-status session_change_from_start(session *s, int parameter, const char *text, fault *f)
+status session_change_from_start(session *s, const parameters *p, int parameter, fault *f)
 {
     const double now = s->now, seen = s->seen;
+    session_input in;
+    parameters before;
     session_seek(s, 0);
-    const status code = session_change(s, parameter, text, f);
+    status code = begin_input(s, parameter, &in, &before, f);
+    if (code == STATUS_OK) {
+        parameter_format(p, parameter, in.text, sizeof in.text);
+        session_input_take(&in, p);
+        code = add_input(s, &in, f);
+    }
     session_seek(s, now);
     s->seen = fmax(seen, s->now);
     return code;
@@ -326,7 +341,7 @@ status session_change_input(session *s, int index, const char *text, fault *f)
     snprintf(in.text, sizeof in.text, "%s", text);
     parameters scratch = session_parameters_at(s, in.time);
     TRY(parameter_set_text(&scratch, in.parameter, text, f));
-    in.value = parameter_get(&scratch, in.parameter);
+    session_input_take(&in, &scratch);
 
     // of two values given for the same instant the later one counts; the cursor stays
     status code = add_input(s, &in, f);

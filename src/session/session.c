@@ -86,16 +86,15 @@ const event *session_event(const session *s)
     return NULL;
 }
 
-// --- the run ---
+void session_input_take(session_input *in, const parameters *p)
+{
+    const char *given = in->text + strspn(in->text, " ");
+    const action a = action_of(in->time, p, in->parameter, given);
+    in->value = a.value;
+    memcpy(in->kept, a.text, sizeof in->kept);
+}
 
-#define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
-#define ROW_SPARE     1.5                   // rows of events beside those of the grid
-#define SHORT_WAIT    0.001 // for the first row of a run that takes long [s]
-
-enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
-
-// An input during the run, as an action of a script.
-static action action_of_input(const session_input *in)
+action session_input_action(const session_input *in)
 {
     action a = {.time = in->time,
                 .kind = ACTION_SET,
@@ -105,9 +104,17 @@ static action action_of_input(const session_input *in)
     if (in->kind == SESSION_INPUT_PUSH) {
         a.kind = ACTION_PUSH;
     }
-    snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
+    memcpy(a.text, in->kept, sizeof a.text);
     return a;
 }
+
+// --- the run ---
+
+#define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
+#define ROW_SPARE     1.5                   // rows of events beside those of the grid
+#define SHORT_WAIT    0.001 // for the first row of a run that takes long [s]
+
+enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
 
 // The scenario with the inputs in effect. Its actions are the only thing it owns.
 static status build_effective(const session *s, scenario *to, fault *f)
@@ -129,10 +136,11 @@ static status build_effective(const session *s, scenario *to, fault *f)
     }
     for (int i = 0; i < s->input_count; i++) {
         const session_input *in = &s->inputs[i];
+        const action a = session_input_action(in);
         if (in->kind == SESSION_INPUT_START) {
-            TRY(parameter_set_text(&to->parameters, in->parameter, in->text, f));
+            TRY(action_give(&a, &to->parameters, f));
         } else {
-            scenario_insert_action(to, action_of_input(in));
+            scenario_insert_action(to, a);
         }
     }
     return parameters_resolve(&to->parameters, f);

@@ -36,11 +36,12 @@ typedef enum session_input_kind {
 
 typedef struct session_input {
     session_input_kind kind;
-    double time;                   // from which it takes effect [s]
-    int parameter;                 // index in parameter_table; -1 for a push
-    double value;                  // the new value; push: impulse [N s]
-    char text[SESSION_INPUT_TEXT]; // the value as it was given
-    double before;                 // the value until then; NaN for a text and for a push
+    double time;                    // from which it takes effect [s]
+    int parameter;                  // index in parameter_table; -1 for a push
+    double value;                   // the new value; push: impulse [N s]
+    char kept[PARAMETER_TEXT_SIZE]; // the new value of a text, as in an action
+    char text[SESSION_INPUT_TEXT];  // how it was given, for files and people
+    double before;                  // the value until then; NaN for a text and for a push
     unsigned gesture; // undone together with its neighbours of this number; 0: alone
     double seen_at;   // where the cursor was when it was given [s]
     size_t seen_row;
@@ -128,8 +129,10 @@ const event *session_event(const session *s);
 // changes and f says why.
 status session_change(session *s, int parameter, const char *text, fault *f);
 status session_change_number(session *s, int parameter, double value, fault *f);
-// The same from the start, wherever the cursor is, which stays.
-status session_change_from_start(session *s, int parameter, const char *text, fault *f);
+// Gives a parameter the value that it has in p, from the start, wherever the cursor is,
+// which stays.
+status session_change_from_start(session *s, const parameters *p, int parameter,
+                                 fault *f);
 // The same as session_change, in the place of the last input if that gave this parameter
 // a value at this very instant: small steps to a value are one input (session.ghost is
 // the run before them), and none once they have led back to where they began.
@@ -148,6 +151,11 @@ status session_pull(session *s, double impulse, unsigned gesture, fault *f);
 status session_change_input(session *s, int index, const char *text, fault *f);
 // Takes inputs[index] out; it is the next that session_redo puts in, at the end.
 status session_drop_input(session *s, int index, fault *f);
+
+// The action that an input is, from its instant on; and what a text gave the input's
+// parameter in p becomes its value.
+action session_input_action(const session_input *in);
+void session_input_take(session_input *in, const parameters *p);
 
 // Puts other inputs in the place of all there are, and computes their run; nothing can be
 // redone then. On failure nothing changes and f says why.

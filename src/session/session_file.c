@@ -70,7 +70,8 @@ static parameters started_with(const run_origin *from)
     for (int i = 0; i < from->input_count; i++) {
         const session_input *in = &from->inputs[i];
         if (in->kind == SESSION_INPUT_START) {
-            parameter_set_text(&p, in->parameter, in->text, NULL);
+            const action a = session_input_action(in);
+            action_give(&a, &p, NULL);
         }
     }
     return p;
@@ -225,7 +226,7 @@ static status read_parameter_change(const session_reader *r, const run_origin *f
     if (parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK) {
         return refuse_line(r, f.text);
     }
-    in->value = parameter_get(&scratch, in->parameter);
+    session_input_take(in, &scratch);
     return STATUS_OK;
 }
 

@@ -82,23 +82,14 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
     }
 
     // the list with one number exchanged
-    char list[PARAMETER_TEXT_SIZE], changed[PARAMETER_LIST_MOST * NUMBER_TEXT + 1] = "";
     double numbers[PARAMETER_LIST_MOST];
-    parameter_format(p, axis->parameter, list, sizeof list);
-    const int count = parameter_list_numbers(list, numbers);
+    const int count = parameter_get_list(p, axis->parameter, numbers);
     if (axis->element > count) {
         return fault_set_at(f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
                             "%s: the scenario's list has %d numbers", axis->name, count);
     }
     numbers[axis->element - 1] = value;
-    for (int i = 0; i < count; i++) {
-        char *end = changed + strlen(changed);
-        if (i > 0) {
-            *end++ = ',';
-        }
-        number_format(end, numbers[i]);
-    }
-    return parameter_set_text(p, axis->parameter, changed, f);
+    return parameter_set_list(p, axis->parameter, numbers, count, f);
 }
 
 status sweep_axes_scenario(const sweep_axis *axes, int count, const double *values,
@@ -127,9 +118,7 @@ double sweep_axis_get(const sweep_axis *axis, const parameters *p)
     }
 
     // a number of the list, if it is as long
-    char list[PARAMETER_TEXT_SIZE];
-    parameter_format(p, axis->parameter, list, sizeof list);
-    if (axis->element <= parameter_list_numbers(list, numbers)) {
+    if (axis->element <= parameter_get_list(p, axis->parameter, numbers)) {
         return numbers[axis->element - 1];
     }
     return value;
@@ -141,7 +130,6 @@ static status read_axis_value(const sweep_axis *axis, const char *text, double *
 {
     parameters scratch = {0};
     const char *own = settings_name(axis->name);
-    char list[PARAMETER_TEXT_SIZE];
     double numbers[PARAMETER_LIST_MOST];
     if (own != NULL) {
         TRY(settings_set_text(&scratch, own, text, f));
@@ -152,11 +140,21 @@ static status read_axis_value(const sweep_axis *axis, const char *text, double *
         *value = sweep_axis_get(axis, &scratch);
         return STATUS_OK;
     }
-    parameter_format(&scratch, axis->parameter, list, sizeof list);
-    FAULT_IF(parameter_list_numbers(list, numbers) != 1, f, STATUS_BAD_ARGUMENT,
-             "'%.60s' is no number", text);
+    FAULT_IF(parameter_get_list(&scratch, axis->parameter, numbers) != 1, f,
+             STATUS_BAD_ARGUMENT, "'%.60s' is no number", text);
     *value = numbers[0];
     return STATUS_OK;
+}
+
+// Checks a number as a value of the axis.
+static status check_axis_value(const sweep_axis *axis, double value, fault *f)
+{
+    const char *own = settings_name(axis->name);
+    if (own == NULL) {
+        return parameter_check_number(axis->parameter, value, f);
+    }
+    parameters scratch = {0};
+    return settings_set(&scratch, own, value, f);
 }
 
 void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size)
@@ -194,7 +192,6 @@ double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n)
 static status fill_range(sweep_axis *axis, size_t n, fault *f)
 {
     char text[SWEEP_VALUE_TEXT];
-    double same;
     axis->values = malloc(n * sizeof *axis->values);
     if (axis->values == NULL) {
         return fault_no_memory(f);
@@ -212,8 +209,7 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
         } else {
             axis->values[i] = value;
         }
-        number_format(text, axis->values[i]);
-        TRY(read_axis_value(axis, text, &same, f));
+        TRY(check_axis_value(axis, axis->values[i], f));
 
         // whole numbers too close together
         if (i > 0 && axis->values[i] == axis->values[i - 1]) {

@@ -97,6 +97,11 @@ static status check_number(const parameter_info *info, double value, fault *f)
     return STATUS_OK;
 }
 
+status parameter_check_number(int index, double value, fault *f)
+{
+    return check_number(row_of(index), value, f);
+}
+
 status parameter_set_number(parameters *p, int index, double value, fault *f)
 {
     const parameter_info *info = row_of(index);
@@ -182,20 +187,53 @@ static status store_text(parameters *p, int index, const char *text, size_t leng
     return STATUS_OK;
 }
 
-// Reads "[10, 12 N m/rad, 9]" and stores it as "10, 12, 9".
-static status store_list(parameters *p, int index, const char *text, size_t length,
-                         fault *f)
+// A list on its way into the parameters, as it is kept: "10, 12, 9".
+typedef struct list_text {
+    char text[PARAMETER_TEXT_SIZE];
+    size_t used;
+    int count;
+} list_text;
+
+// Appends a number, in as few digits as give it back.
+static status append_number(list_text *list, const parameter_info *info, double value,
+                            fault *f)
+{
+    TRY(check_number(info, value, f));
+    char number[NUMBER_TEXT];
+    number_format_short(number, value);
+    list->used +=
+        (size_t)snprintf(list->text + list->used, sizeof list->text - list->used, "%s%s",
+                         list->count > 0 ? ", " : "", number);
+    if (list->count == PARAMETER_LIST_MOST || list->used >= sizeof list->text) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, info->path,
+            "%s is too long, expected at most %d numbers and 127 characters", info->path,
+            PARAMETER_LIST_MOST);
+    }
+    list->count++;
+    return STATUS_OK;
+}
+
+static void store_list(parameters *p, int index, const list_text *list)
+{
+    memcpy((char *)p + row_of(index)->offset, list->text, sizeof list->text);
+    p->set[index] = 1;
+}
+
+// Reads "[10, 12 N m/rad, 9]" and stores it.
+static status read_list(parameters *p, int index, const char *text, size_t length,
+                        fault *f)
 {
     const parameter_info *info = row_of(index);
-    char list[PARAMETER_TEXT_SIZE] = "";
-    size_t used = 0;
-    const bool bracketed = length > 1 && text[0] == '[' && text[length - 1] == ']';
-    const char *end = text + length - bracketed;
-    text += bracketed;
+    list_text list = {.text = ""};
+    const char *end = text + length;
+    if (length > 1 && text[0] == '[' && text[length - 1] == ']') {
+        text++;
+        end--;
+    }
 
-    for (int count = 0; text < end; count++) {
+    while (text < end) {
         // what stands before the next comma, without blanks around it
-        char word[PARAMETER_TEXT_SIZE], number[NUMBER_TEXT];
         const char *comma = memchr(text, ',', (size_t)(end - text));
         const char *first = text, *last = comma != NULL ? comma : end;
         while (first < last && is_blank(*first)) {
@@ -204,39 +242,41 @@ static status store_list(parameters *p, int index, const char *text, size_t leng
         while (last > first && is_blank(last[-1])) {
             last--;
         }
-        snprintf(word, sizeof word, "%.*s", (int)(last - first), first);
 
-        // a number of the parameter's unit and range, and no comma too many
+        // a number of the parameter's unit and range
+        char word[PARAMETER_TEXT_SIZE];
         double value;
+        snprintf(word, sizeof word, "%.*s", (int)(last - first), first);
         if (first == last) {
             return fault_set_at(
                 f, STATUS_BAD_SCENARIO, info->path,
                 "%s: number %d is missing, expected numbers with commas between them",
-                info->path, count + 1);
+                info->path, list.count + 1);
         }
         TRY(parse_quantity(info, word, &value, f));
-        TRY(check_number(info, value, f));
+        TRY(append_number(&list, info, value, f));
 
-        // in as few digits as give it back
-        number_format_short(number, value);
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s",
-                                 used > 0 ? ", " : "", number);
-        if (count == PARAMETER_LIST_MOST || used >= sizeof list) {
-            return fault_set_at(
-                f, STATUS_BAD_SCENARIO, info->path,
-                "%s is too long, expected at most %d numbers and 127 characters",
-                info->path, PARAMETER_LIST_MOST);
-        }
-        if (comma != NULL && comma + 1 == end) {
-            text = comma;
-        } else if (comma != NULL) {
+        // a comma at the end lacks the number behind it
+        text = end;
+        if (comma != NULL && comma + 1 < end) {
             text = comma + 1;
-        } else {
-            text = end;
+        } else if (comma != NULL) {
+            text = comma;
         }
     }
-    memcpy((char *)p + info->offset, list, sizeof list);
-    p->set[index] = 1;
+    store_list(p, index, &list);
+    return STATUS_OK;
+}
+
+status parameter_set_list(parameters *p, int index, const double *numbers, int count,
+                          fault *f)
+{
+    list_text list = {.text = ""};
+    assert(row_of(index)->type == PARAMETER_LIST);
+    for (int i = 0; i < count; i++) {
+        TRY(append_number(&list, row_of(index), numbers[i], f));
+    }
+    store_list(p, index, &list);
     return STATUS_OK;
 }
 
@@ -302,7 +342,7 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
         return store_text(p, index, text, length, f);
     }
     if (info->type == PARAMETER_LIST) {
-        return store_list(p, index, text, length, f);
+        return read_list(p, index, text, length, f);
     }
 
     char word[PARAMETER_TEXT_SIZE];

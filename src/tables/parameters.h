@@ -131,8 +131,10 @@ static inline bool parameter_is_text(const parameter_info *info)
 }
 
 // The numbers of a list as it is kept; returns how many there are, 0 for the empty list,
-// which is the default.
+// which is the default. The same of parameter `index`.
 int parameter_list_numbers(const char *list, double numbers[PARAMETER_LIST_MOST]);
+int parameter_get_list(const parameters *p, int index,
+                       double numbers[PARAMETER_LIST_MOST]);
 
 // Length of each link [m], lengths[links], of resolved parameters.
 void parameters_link_lengths(const arm_parameters *a, double *lengths);
@@ -195,6 +197,13 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f);
 // Stores a number (an enumeration's index for a choice, 0 or 1 for a boolean), checked as
 // above. A text takes no number.
 status parameter_set_number(parameters *p, int index, double value, fault *f);
+
+// Stores the numbers of a list, each checked as above.
+status parameter_set_list(parameters *p, int index, const double *numbers, int count,
+                          fault *f);
+
+// Whether a number may be the value of a parameter, or one of its list's.
+status parameter_check_number(int index, double value, fault *f);
 
 // The value as a number; NaN where an optional parameter has none, 0 for a text.
 double parameter_get(const parameters *p, int index);

@@ -28,6 +28,14 @@ int parameter_list_numbers(const char *list, double numbers[PARAMETER_LIST_MOST]
     return count;
 }
 
+int parameter_get_list(const parameters *p, int index,
+                       double numbers[PARAMETER_LIST_MOST])
+{
+    assert(parameter_table[index].type == PARAMETER_LIST);
+    const char *list = (const char *)p + parameter_table[index].offset;
+    return parameter_list_numbers(list, numbers);
+}
+
 void parameters_link_lengths(const arm_parameters *a, double *lengths)
 {
     assert(a->links > 0);

@@ -276,11 +276,9 @@ status act_pin_value(explorer_model *model, const sweep_axis *axis, double value
                      const char *name, fault *f)
 {
     parameters p = model->session.effective.parameters;
-    char text[PARAMETER_TEXT_SIZE];
     run_origin from;
     session other;
     TRY(sweep_axis_apply(axis, value, &p, f));
-    parameter_format(&p, axis->parameter, text, sizeof text);
     TRY(run_origin_take(&from, &model->session, f));
 
     // the present run's changes, and the value from the start
@@ -288,7 +286,7 @@ status act_pin_value(explorer_model *model, const sweep_axis *axis, double value
     run_origin_finish(&from);
     TRY(code);
     session_seek(&other, 0);
-    code = session_change_from_start(&other, axis->parameter, text, f);
+    code = session_change_from_start(&other, &p, axis->parameter, f);
     if (code == STATUS_OK) {
         code = run_list_pin(&model->pinned, &other, name, f);
     }
