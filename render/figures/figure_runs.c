@@ -20,7 +20,10 @@ void run_close(void *run)
 
 opened_run *run_open(const char *name, const char *change, fault *f)
 {
-    return run_open_changed(name, &change, change != NULL ? 1 : 0, NULL, f);
+    if (change == NULL) {
+        return run_open_changed(name, NULL, 0, NULL, f);
+    }
+    return run_open_changed(name, &change, 1, NULL, f);
 }
 
 opened_run *run_open_changed(const char *name, const char *const *changes, int count,
@@ -38,15 +41,18 @@ opened_run *run_open_changed(const char *name, const char *const *changes, int c
     }
     if (code != STATUS_OK) {
         fault_set(f, code, "%s", first.text);
-    } else {
-        code = run_scenario_with(&r->scenario, &options, &r->result);
-        if (code == STATUS_OK) {
-            return r;
-        }
-        fault_set(f, code, "%s: %s", name, r->result.summary.message);
+        run_close(r);
+        return NULL;
     }
-    run_close(r);
-    return NULL;
+
+    // and the run
+    code = run_scenario_with(&r->scenario, &options, &r->result);
+    if (code != STATUS_OK) {
+        fault_set(f, code, "%s: %s", name, r->result.summary.message);
+        run_close(r);
+        return NULL;
+    }
+    return r;
 }
 
 owned_figure *run_plot_create(const figure_order *order, const char *change, int panels,
@@ -139,11 +145,11 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels,
     assert(run_count >= 1);
     trace_run all[TRACE_RUNS];
     trace_panel asked[FIGURE_PANELS];
-    if (panels == NULL) {
-        panel_count = USUAL_PANELS;
-    }
+
+    // the panels: those asked for, those given, or the usual ones
     if (panels == NULL) {
         panels = usual_panels;
+        panel_count = USUAL_PANELS;
     }
     if (o->signals != NULL) {
         if (read_signal_panels(o->signals, asked, &panel_count, f) != STATUS_OK) {
@@ -151,7 +157,11 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels,
         }
         panels = asked;
     }
-    if (run_count + (o->overlay != NULL) > TRACE_RUNS) {
+    int curves = run_count;
+    if (o->overlay != NULL) {
+        curves++;
+    }
+    if (curves > TRACE_RUNS) {
         fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data",
                   TRACE_RUNS);
         return NULL;

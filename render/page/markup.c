@@ -59,26 +59,52 @@ typedef struct line_letters {
     double size, scale;
 } line_letters;
 
+// What text_translate looks for, by the groups of its expression; a tag of any other kind
+// is in none of them.
+enum {
+    OTHER_TAG,
+    SUBSCRIPT,
+    SUPERSCRIPT,
+    INDEX_END,
+    THIN_SPACE,
+    JOINED_SPACE,
+    TYPED_APOSTROPHE,
+    UNIT_SLASH
+};
+
+// The letters of an index, raised by a share of the line's size.
+static void begin_index(GString *out, const line_letters *l, double rise)
+{
+    // in 1/1024 of a point, which every version of Pango understands
+    const double small = text_index_letters(l->size * l->scale) / l->scale;
+    text_append(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
+                (int)(rise * l->size * 1024));
+}
+
 static gboolean translate(const GMatchInfo *match, GString *out, gpointer context)
 {
     // a thin space stands between a number and its unit: its twin does not break, and
     // behind a word joiner no line ends
-    static const char *const instead[] = {
-        [3] = "</span>", "\u202f", "\u00a0", "\u2019", "/\u2060"};
+    static const char *const instead[] = {[INDEX_END] = "</span>",
+                                          [THIN_SPACE] = "\u202f",
+                                          [JOINED_SPACE] = "\u00a0",
+                                          [TYPED_APOSTROPHE] = "\u2019",
+                                          [UNIT_SLASH] = "/\u2060"};
     const int group = g_match_info_get_match_count(match) - 1;
-    if (group == 0) {
-        // any other tag stays as it is
+    switch (group) {
+    case OTHER_TAG: {
         g_autofree char *tag = g_match_info_fetch(match, 0);
         g_string_append(out, tag);
-    } else if (group > 2) {
+        break;
+    }
+    case SUBSCRIPT:
+        begin_index(out, context, -0.2);
+        break;
+    case SUPERSCRIPT:
+        begin_index(out, context, 0.35);
+        break;
+    default:
         g_string_append(out, instead[group]);
-    } else {
-        // in 1/1024 of a point, which every version of Pango understands
-        const line_letters *l = context;
-        double small = text_index_letters(l->size * l->scale) / l->scale;
-        const double rise = group == 2 ? 0.35 : -0.2; // superscript or subscript
-        text_append(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
-                    (int)(rise * l->size * 1024));
     }
     return FALSE;
 }

@@ -18,6 +18,7 @@
 
 enum { COMPRESSION = 3 };
 
+// Ends the writing of a PNG with libpng's message as its fault.
 static void fail(png_structp png, png_const_charp message)
 {
     fault *f = png_get_error_ptr(png);
@@ -25,6 +26,7 @@ static void fail(png_structp png, png_const_charp message)
     longjmp(png_jmpbuf(png), 1);
 }
 
+// Warnings of libpng are about files that are read.
 static void warn(png_structp png, png_const_charp message)
 {
     (void)png;
@@ -119,13 +121,14 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
         g_error("out of memory");
     }
 
-    // one row at a time
+    // what it is, then one row at a time
     if (setjmp(png_jmpbuf(png)) == 0) {
         png_uint_32 per_metre = (png_uint_32)lround(dpi / 0.0254);
         png_set_write_fn(png, stream, write_bytes, NULL);
         png_set_IHDR(png, info, (png_uint_32)width, height, 8, kind, PNG_INTERLACE_NONE,
                      PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_set_pHYs(png, info, per_metre, per_metre, PNG_RESOLUTION_METER);
+
         // flat colours and thin lines: filters would cost twice the time and make larger
         // files
         png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
@@ -153,11 +156,9 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
 const char *picture_ending(const char *path)
 {
     // only in the last part of the path: a dot in a folder's name begins no ending
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    if (dot != NULL) {
-        return dot;
-    }
-    return path + strlen(path);
+    const char *slash = strrchr(path, '/');
+    const char *dot = strrchr(text_or(slash, path), '.');
+    return text_or(dot, path + strlen(path));
 }
 
 picture_format picture_format_of(const char *path)
@@ -167,14 +168,13 @@ picture_format picture_format_of(const char *path)
         picture_format format;
     } known[] = {{"png", FORMAT_PNG}, {"pdf", FORMAT_PDF}, {"svg", FORMAT_SVG}};
 
+    // the ending of a file, or a word
     const char *ending = picture_ending(path), *slash = strrchr(path, '/');
-    const char *word;
+    const char *word = path;
     if (ending[0] == '.') {
         word = ending + 1;
-    } else if (slash) {
+    } else if (slash != NULL) {
         word = slash + 1;
-    } else {
-        word = path;
     }
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         if (strcasecmp(word, known[i].name) == 0) {
@@ -372,7 +372,8 @@ char *picture_svg(const picture *p, fault *f)
 
     // metadata come right after the root's opening
     if (code == STATUS_OK) {
-        char *root = strstr(svg->str, "<svg"), *end = root ? strchr(root, '>') : NULL;
+        const char *root = strstr(svg->str, "<svg");
+        const char *end = strchr(text_or(root, ""), '>');
         if (end != NULL) {
             GString *metadata = svg_metadata(p);
             g_string_insert(svg, end + 1 - svg->str, metadata->str);

@@ -111,6 +111,21 @@ static void draw_block(sketch *s, const text_block *t, point at, anchor part, co
                     (figure_rect){k * r.x, k * r.y, k * r.width, k * r.height});
 }
 
+// The title above the drawing and the caption below it.
+static void draw_frame_texts(sketch *s)
+{
+    const sketch_frame *frame = s->frame;
+    g_autofree char *title = text_escape(frame->title);
+    const text_block heading = title_block(frame, title);
+    draw_block(s, &heading, (point){s->left, SKETCH_MARGIN}, (anchor){0, 0},
+               s->colours->text);
+    if (frame->caption != NULL) {
+        const text_block caption = caption_block(frame);
+        draw_block(s, &caption, (point){s->left, s->bottom + TITLE_SPACE}, (anchor){0, 0},
+                   s->colours->faint_text);
+    }
+}
+
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame,
                     figure_report *report, fault *f)
 {
@@ -148,19 +163,8 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame,
     s->right = s->left + inner_width(frame);
     s->top = above;
     s->bottom = above + frame->body_height;
-    if (frame->look.bare) {
-        return STATUS_OK;
-    }
-
-    // title above, caption below
-    g_autofree char *title = text_escape(frame->title);
-    const text_block heading = title_block(frame, title);
-    draw_block(s, &heading, (point){s->left, SKETCH_MARGIN}, (anchor){0, 0},
-               s->colours->text);
-    if (frame->caption != NULL) {
-        const text_block caption = caption_block(frame);
-        draw_block(s, &caption, (point){s->left, s->bottom + TITLE_SPACE}, (anchor){0, 0},
-                   s->colours->faint_text);
+    if (!frame->look.bare) {
+        draw_frame_texts(s);
     }
     return STATUS_OK;
 }
@@ -390,7 +394,8 @@ static void draw_zigzag(const sketch *s, const guide *g, int turns, double heigh
     line_to_point(s, g->from);
     line_to_point(s, guide_at(g, lead, 0));
     for (int i = 0; i < 2 * turns; i++) {
-        line_to_point(s, guide_at(g, lead + (i + 0.5) * step, i % 2 ? -height : height));
+        const double side = i % 2 == 0 ? height : -height;
+        line_to_point(s, guide_at(g, lead + (i + 0.5) * step, side));
     }
     line_to_point(s, guide_at(g, g->length - lead, 0));
     line_to_point(s, guide_at(g, g->length, 0));
@@ -460,10 +465,9 @@ void sketch_wrapped(sketch *s, point at, const text_block *text)
         text_block line = t;
         line.width = 0;
         if (text_measure(s->context, &line).width <= t.width) {
+            part.x = 0.5;
             if (t.align == TEXT_RIGHT) {
                 part.x = 1;
-            } else {
-                part.x = 0.5;
             }
             at.x += part.x * t.width;
             t.width = 0;

@@ -9,6 +9,7 @@
 
 #define PANEL_HEIGHT 34.0 // of a panel of weight 1 on a page without a height [mm]
 #define SIDES        52.0 // approximate width of the labels next to the panels [pt]
+#define X_AXIS_SPACE 24.0 // below the panels, for the labels of the horizontal axis [pt]
 
 // What a figure owns, with the function that ends it.
 typedef struct kept_thing {
@@ -84,15 +85,17 @@ const char *owned_figure_printf(owned_figure *o, const char *format, ...)
 
 void figure_take_look(figure *fig, const page_look *look)
 {
-    fig->theme = look->theme;
+    // the size; another width has the height that the panels need
     if (look->width > 0) {
         fig->width = look->width;
+        fig->height = 0;
     }
     if (look->height > 0) {
         fig->height = look->height;
-    } else if (look->width > 0) {
-        fig->height = 0;
     }
+
+    // colours and letters
+    fig->theme = look->theme;
     if (look->dpi > 0) {
         fig->dpi = look->dpi;
     }
@@ -128,7 +131,7 @@ static double wrapped_height(const figure *fig, const char *markup, double size,
 
 void figure_size(const figure *fig, double *width, double *height)
 {
-    // a page that is half as wide has panels that are a fifth lower
+    // a page that is half as wide has panels that are a fifth lower: 0.5^0.32 = 0.8
     const double share = fmin(1, figure_width(fig) / DEFAULT_WIDTH);
     const double panel = PANEL_HEIGHT * pow(share, 0.32) * POINTS_PER_MM;
     const int columns = figure_columns(fig);
@@ -147,7 +150,7 @@ void figure_size(const figure *fig, double *width, double *height)
     }
 
     // the axis below, title and caption
-    points += 2 * PAGE_MARGIN + 24;
+    points += 2 * PAGE_MARGIN + X_AXIS_SPACE;
     if (fig->title != NULL && !fig->bare) {
         g_autofree char *title = text_escape(fig->title);
         points += wrapped_height(fig, title, TITLE_LETTERS, true);

@@ -379,11 +379,58 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f)
     return text_check_font(f);
 }
 
+static size_t count_missing(const sweep_picture *p)
+{
+    size_t missing = 0;
+    for (size_t i = 0; i < p->sweep->run_count; i++) {
+        if (!isfinite(p->values[i])) {
+            missing++;
+        }
+    }
+    return missing;
+}
+
+// One parameter: the quantity over it.
+static void describe_one_parameter(owned_figure *o, const sweep_picture *p,
+                                   figure_axis quantity)
+{
+    varied parameter;
+    o->figure.x = varied_axis(o, &parameter, &p->sweep->axes[0]);
+    o->panels[0].y = quantity;
+    o->panels[0].y.room = LINE_ROOM;
+    describe_line(o, p, &parameter);
+}
+
+// Two parameters: a curve for each word of one of them, or a map.
+static void describe_two_parameters(owned_figure *o, const sweep_picture *p,
+                                    figure_axis quantity)
+{
+    varied both[2];
+    const figure_axis first = varied_axis(o, &both[0], &p->sweep->axes[0]);
+    const figure_axis second = varied_axis(o, &both[1], &p->sweep->axes[1]);
+    const int words = axis_of_curves(both, p->sweep);
+    if (words < 0) {
+        o->figure.x = first;
+        o->panels[0].y = second;
+        describe_map(o, p, both, quantity);
+        return;
+    }
+
+    // over the parameter of numbers
+    o->figure.x = first;
+    if (words == 0) {
+        o->figure.x = second;
+    }
+    o->panels[0].y = quantity;
+    o->panels[0].y.room = LINE_ROOM;
+    describe_words(o, p, both, words);
+}
+
 owned_figure *sweep_figure_create(const sweep_picture *p)
 {
-    static const char *const how[] = {[SWEEP_GRID] = "",
-                                      [SWEEP_RANDOM] = " at random",
-                                      [SWEEP_LATIN] = " of a Latin hypercube"};
+    static const char *const sampled[] = {[SWEEP_GRID] = "",
+                                          [SWEEP_RANDOM] = " at random",
+                                          [SWEEP_LATIN] = " of a Latin hypercube"};
     const sweep *from = p->sweep;
     assert(from->axis_count >= 1 && from->axis_count <= 2);
 
@@ -395,41 +442,23 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
     char changes[SCENARIO_CHANGES];
     owned_figure *o =
         owned_figure_create(1, "%s: %s of %zu runs%s%s", from->base->name, info->label,
-                            from->run_count, how[from->sampling],
+                            from->run_count, sampled[from->sampling],
                             scenario_changes(from->base, changes));
-    size_t missing = 0;
-    for (size_t i = 0; i < from->run_count; i++) {
-        if (!isfinite(p->values[i])) {
-            missing++;
-        }
-    }
 
     // axes and layers
-    varied both[2] = {0};
-    figure_axis axes[2] = {varied_axis(o, &both[0], &from->axes[0])};
-    if (from->axis_count > 1) {
-        axes[1] = varied_axis(o, &both[1], &from->axes[1]);
-    }
-    const int words = axis_of_curves(both, from);
     const figure_axis quantity = described_axis(o, p->key, info->label, info->unit);
-    figure_panel *panel = &o->panels[0];
-    o->figure.x = axes[words == 0];
-    panel->y = quantity;
-    panel->y.room = LINE_ROOM;
     if (from->axis_count == 1) {
-        describe_line(o, p, &both[0]);
-    } else if (words >= 0) {
-        describe_words(o, p, both, words);
+        describe_one_parameter(o, p, quantity);
     } else {
-        panel->y = axes[1];
-        describe_map(o, p, both, quantity);
+        describe_two_parameters(o, p, quantity);
     }
 
     // the page
+    const size_t missing = count_missing(p);
     if (missing == from->run_count) {
-        panel->remark = "the quantity did not occur in any run";
+        o->panels[0].remark = "the quantity did not occur in any run";
     }
-    panel->weight = PANEL_WEIGHT;
+    o->panels[0].weight = PANEL_WEIGHT;
     o->figure.caption = owned_figure_keep(o, caption_of(from, missing));
     o->figure.parameters = owned_figure_keep(o, command_of(from));
     return o;
