@@ -45,6 +45,7 @@ static status paint_artwork(cairo_t *cr, const void *what, fault *f)
     return artwork_paint(a, cr, a->seen, f);
 }
 
+// What it shows, and what the file is to say of it.
 picture artwork_picture(const artwork *a, const figure_options *options)
 {
     // without an alternative text the title stands in for it
@@ -267,6 +268,7 @@ static char *latex_escape(const char *plain)
     return g_string_free(out, FALSE);
 }
 
+// The environment of a picture with its caption, as LaTeX text.
 char *latex_environment(const artwork *a, const char *tex, const char *file)
 {
     g_autofree char *tex_folder = g_path_get_dirname(tex),
@@ -350,6 +352,7 @@ static status write_caption(const artwork *a, const char *path, fault *f)
     return write_text_file(file, text, f);
 }
 
+// The picture, and beside it whatever the options ask for.
 status artwork_publish(const artwork *a, const figure_options *o, const char *path,
                        bool with_csv, fault *f)
 {
@@ -380,6 +383,7 @@ void figure_take_range(figure *fig, const figure_options *o)
     }
 }
 
+// A figure that shows no recorded signals.
 status figure_publish(const figure *fig, const figure_options *o, const char *path,
                       bool with_csv, fault *f)
 {

@@ -108,6 +108,7 @@ static void name_length(sketch *s, point from, point to, double left, double up)
     sketch_label(s, shifted(middle, -left, -up), (anchor){1, 1}, "<i>l</i>");
 }
 
+// The arm at two successive steps over the reference line.
 static void draw_contact(sketch *s, const diagram *d)
 {
     const arm_shapes *of = &d->shapes;
@@ -157,6 +158,7 @@ static void add_shape_values(diagram *d, const arm_shape *a)
     diagram_add_value(d, "force f", a->force, "N");
 }
 
+// Figure 3.1.
 status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d =
@@ -198,6 +200,7 @@ status diagram_contact(const figure_order *order, artwork *out, fault *f)
 
 // ---- 4.6: the largest deformation
 
+// The arm at its peak force, at first contact, and as the energy principle has it.
 static void draw_deformation(sketch *s, const diagram *d)
 {
     const arm_shapes *of = &d->shapes;
@@ -257,6 +260,7 @@ static const sample *row_before(const trace *t, double contact)
     return before;
 }
 
+// Figure 4.6.
 status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d = diagram_create(order, NULL, 148, draw_deformation, f);
@@ -472,6 +476,7 @@ static void draw_collision(sketch *s, const diagram *d)
     draw_cut_body(s, d);
 }
 
+// Figure 4.2.
 status diagram_collision(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d =

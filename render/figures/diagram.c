@@ -18,6 +18,7 @@ static status paint_diagram(cairo_t *cr, const void *what, figure_report *report
     return sketch_end(&s);
 }
 
+// The diagram's numbers as rows of quantity, value and unit.
 static void write_diagram(const void *what, csv_writer *csv)
 {
     const diagram *d = what;
@@ -45,6 +46,7 @@ void diagram_release(void *what)
     g_free(d);
 }
 
+// The run is made here; its parameters are those of the diagram.
 diagram *diagram_create(const figure_order *order, const char *change, double body,
                         void (*draw)(sketch *s, const diagram *d), fault *f)
 {
@@ -74,6 +76,7 @@ status diagram_lacks(const diagram *d, const char *what, fault *f)
                      what);
 }
 
+// Looks for the first impact among the run's events.
 status diagram_take_impact(diagram *d, double *speed, fault *f)
 {
     const trace *t = &d->run->result.trace;
@@ -112,6 +115,7 @@ void diagram_link_angle(sketch *s, point at, double radius, double to, const cha
     diagram_angle(s, at, (angle_arc){radius, 0, to, markup});
 }
 
+// From here on the artwork owns the diagram.
 status diagram_open(diagram **held, artwork *out, const char *caption, ...)
 {
     diagram *d = g_steal_pointer(held);

@@ -40,6 +40,7 @@ static void draw_hub(sketch *s, const view *v, point hub)
                  "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>");
 }
 
+// Hub and links with angles, springs, lengths, masses.
 static void draw_links_diagram(sketch *s, const diagram *d)
 {
     // the arm in the model, far more bent than in use
@@ -84,6 +85,7 @@ static void draw_links_diagram(sketch *s, const diagram *d)
     sketch_label(s, shifted(tip, 7, 0), (anchor){0, 0.5}, "tip");
 }
 
+// Lengths, masses and springs of the arm.
 static void add_arm_values(diagram *d)
 {
     const arm_parameters *a = &d->p.arm;
@@ -96,6 +98,7 @@ static void add_arm_values(diagram *d)
     diagram_add_value(d, "spring of the beam k2", a->k2, "N m/rad");
 }
 
+// Figure 2.2.
 status diagram_links(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d = diagram_create(order, NULL, 190, draw_links_diagram, f);
@@ -184,6 +187,7 @@ static void draw_last_link(sketch *s, point from, point tip, double angle)
     sketch_small(s, shifted(centre, 8, 10), (anchor){0, 0}, "body 3");
 }
 
+// Hub and links apart, each with what its neighbours do to it.
 static void draw_free_bodies(sketch *s, const diagram *d)
 {
     const double l = d->p.arm.length / 2, metre = 184, base = s->bottom - 52;
@@ -204,6 +208,7 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     draw_last_link(s, joint, tip, second_angle);
 }
 
+// Figure 2.3.
 status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d = diagram_create(order, NULL, 158, draw_free_bodies, f);
@@ -239,6 +244,7 @@ static void draw_moving_mass(sketch *s, point at, double half_width, double half
     sketch_label(s, shifted(at, 38, -30), (anchor){0, 0.5}, "<i>v</i><sub>0</sub>");
 }
 
+// A mass that runs against the wall through two springs.
 static void draw_springs(sketch *s, const diagram *d)
 {
     const double half_width = 26, half_height = 20; // of the mass
@@ -272,6 +278,7 @@ static void draw_springs(sketch *s, const diagram *d)
                  k1 * k2 / (k1 + k2));
 }
 
+// Figure 4.1.
 status diagram_springs(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d = diagram_create(order, NULL, 108, draw_springs, f);
@@ -429,6 +436,7 @@ static void paint_part(sketch *s, const figure *fig, double x, double y)
     }
 }
 
+// The circuit above, the curve of its output over the force below.
 static void draw_sensor(sketch *s, const diagram *d)
 {
     draw_divider(s, &d->p.sensor, s->left + 74, s->top);
@@ -464,6 +472,7 @@ static void draw_sensor(sketch *s, const diagram *d)
     paint_part(s, &plot, s->left, s->top + CIRCUIT_HEIGHT);
 }
 
+// Figure 2.1.
 status diagram_sensor(const figure_order *order, artwork *out, fault *f)
 {
     const double height = CIRCUIT_HEIGHT + CURVE_HEIGHT / 25.4 * 72;

@@ -26,6 +26,7 @@ opened_run *run_open(const char *name, const char *change, fault *f)
     return run_open_changed(name, &change, 1, NULL, f);
 }
 
+// Opens the scenario, changes it, runs it.
 opened_run *run_open_changed(const char *name, const char *const *changes, int count,
                              run_monitor *monitor, fault *f)
 {
@@ -55,6 +56,7 @@ opened_run *run_open_changed(const char *name, const char *const *changes, int c
     return r;
 }
 
+// The run ends with the figure.
 owned_figure *run_plot_create(const figure_order *order, const char *change, int panels,
                               const opened_run **run, fault *f)
 {
@@ -138,6 +140,7 @@ static status read_signal_panels(const char *text, trace_panel *panels, int *cou
 
 // ---- figures of runs
 
+// Chooses the panels, adds measured data as one more run, and draws them all.
 owned_figure *run_figure_create(const char *title, const trace_panel *panels,
                                 int panel_count, const trace_run *runs, int run_count,
                                 const figure_options *o, fault *f)

@@ -152,6 +152,7 @@ static char *numbered_title(const thesis_figure *which)
     return g_strdup(which->caption);
 }
 
+// By its own function, or as recorded signals.
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out,
                    fault *f)
 {
@@ -167,6 +168,7 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
     return open_signals(&order, out, NULL, f);
 }
 
+// Opens the figure once and writes it in every format.
 status figure_draw(const char *id, const figure_options *o, const char *folder,
                    const char *formats, FILE *tex, fault *f)
 {

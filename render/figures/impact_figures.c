@@ -70,6 +70,7 @@ static void show_pulse(impact_figure *fig, double low, double high)
         (figure_axis){"time", "Time <i>t</i>", .unit = "s", .low = low, .high = high};
 }
 
+// Figure 4.3.
 status figure_force_profile(const figure_order *order, artwork *out, fault *f)
 {
     impact_figure fig = open_impact(order, 1, f);
@@ -155,6 +156,7 @@ static double assumed_at(const assumption *a, double since)
     return a->velocity * (1 - since / a->period);
 }
 
+// The assumed motion from contact to peak as a dashed curve.
 static void add_assumption(impact_figure *fig, int panel, const assumption *a,
                            const char *label)
 {
@@ -240,6 +242,7 @@ static double add_motion(impact_figure *fig, int panel, const assumed_kind *kind
     return departure(fig, name, a);
 }
 
+// Figures 4.4 and 4.5.
 status assumed_motion(const figure_order *order, artwork *out, fault *f)
 {
     const assumed_kind *kind = &assumed_kinds[order->which->variant];

@@ -110,6 +110,7 @@ static void add_table_panels(owned_figure *plot, const printed_kind *kind,
                        .series_count = kind->count};
 }
 
+// Forces or delays of three tables, side by side.
 status printed_values_figure(const figure_order *order, artwork *out, fault *f)
 {
     static const char *const tables[TABLES] = {"4.1", "4.2", "4.3"};

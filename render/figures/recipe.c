@@ -22,6 +22,7 @@ static char *path_of(const char *recipe_path, const char *name)
     return g_build_filename(folder, name, NULL);
 }
 
+// Reads measured data as a run without a scenario.
 static status open_measured(recipe *r, recipe_source *s, const char *path, fault *f)
 {
     trace_panel shown[FIGURE_PANELS];
@@ -52,6 +53,7 @@ static status open_recipe_run(recipe *r, recipe_source *s, const char *path, fau
     return f->code;
 }
 
+// Reads the columns of a sweep's database that are shown.
 static status open_sweep_table(recipe *r, recipe_source *s, const char *path, fault *f)
 {
     const char *const keys[] = {s->x, s->y, s->z};
@@ -63,6 +65,7 @@ static status open_sweep_table(recipe *r, recipe_source *s, const char *path, fa
     return code;
 }
 
+// Opens what a source names, by its kind.
 static status open_source(recipe *r, recipe_source *s, const char *recipe_path, fault *f)
 {
     static status (*const open[])(recipe * r, recipe_source * s, const char *path,
@@ -125,6 +128,7 @@ static figure_axis column_axis(recipe *r, const char *key)
 
 // ---- tables
 
+// A table's column over another one.
 static void add_curve(recipe *r, int panel, const recipe_source *s)
 {
     // more curves than a panel has room for are left out
@@ -140,6 +144,7 @@ static void add_curve(recipe *r, int panel, const recipe_source *s)
                                      .marker = marker_of(s->count, (size_t)index)});
 }
 
+// A table's third column as colours over the other two.
 static void add_map(recipe *r, int panel, const recipe_source *s)
 {
     figure_panel *p = &r->plot->panels[panel];
@@ -173,6 +178,7 @@ static void add_table(recipe *r, int panel, const recipe_source *s)
 
 // ---- curves
 
+// A recorded signal of a run, or of measured data.
 static void add_recorded(recipe *r, int panel, const recipe_source *s, int index,
                          int signals)
 {
@@ -388,6 +394,7 @@ static void describe_recipe(recipe *r, const figure_options *o)
     figure_take_range(shown, o);
 }
 
+// Reads the recipe, opens its sources, describes its figure.
 status recipe_open(const char *path, const figure_options *o, fault_handler report,
                    void *context, artwork *out, fault *f)
 {
@@ -420,6 +427,7 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
     return STATUS_OK;
 }
 
+// A map with panels.
 bool recipe_is(const char *path)
 {
     size_t length;

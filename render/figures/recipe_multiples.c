@@ -162,6 +162,7 @@ static bool read_map(recipe_context *c, const tree_node *node, multiples *m)
     return true;
 }
 
+// Repeats runs, then panels.
 void recipe_read_multiples(recipe_context *c, const tree_node *node, void *into)
 {
     recipe *r = into;

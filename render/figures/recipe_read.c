@@ -189,6 +189,7 @@ static const recipe_form whole = {
              {"multiples", .read = recipe_read_multiples}},
 };
 
+// By the form of a whole recipe.
 bool recipe_read(recipe *r, const char *path, const char *text, size_t length,
                  fault_handler report, void *report_context)
 {

@@ -25,6 +25,7 @@ bool recipe_is_pair(const tree_node *node)
            node->first->next->next == NULL;
 }
 
+// A list of two numbers.
 static void read_pair(recipe_context *c, const tree_node *node, const char *what,
                       double *a, double *b)
 {
@@ -47,6 +48,7 @@ const tree_node *recipe_first(recipe_context *c, const tree_node *list, const ch
     return list->first;
 }
 
+// A number with its unit, within the range of its key.
 static void read_quantity_field(recipe_context *c, const tree_node *node,
                                 const recipe_key *key, double *value)
 {
@@ -143,6 +145,7 @@ static void check_key(recipe_context *c, const tree_node *node, const recipe_for
                 form->what, text_or(near.best, form->keys[0].key));
 }
 
+// Key by key in the order of the form, so that what others name comes first.
 void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form,
                 void *into)
 {

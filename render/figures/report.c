@@ -98,6 +98,7 @@ static void put_text(cairo_t *cr, PangoContext *context, const char *markup, dou
     text_put(cr, context, &t, x, y, (anchor){0, 0}, palette_of(THEME_COLOUR)->text);
 }
 
+// Heading, preface and a table of contents.
 static void put_title_page(cairo_t *cr, PangoContext *context, const report_content *r)
 {
     put_text(cr, context, r->heading, 18, true, PAGE_MARGIN, HEADING_TOP);
@@ -152,6 +153,7 @@ static status paint_item(cairo_t *cr, PangoContext *context, const report_item *
     return STATUS_OK;
 }
 
+// The title page, or items one below the other with the page's number.
 static status paint_page(cairo_t *cr, const void *what, fault *f)
 {
     const report_page *page = what;
@@ -200,6 +202,7 @@ static GArray *make_pages(const report_content *r)
     return pages;
 }
 
+// Every page as a picture of one file.
 static status write_pdf(const report_content *r, const char *path, fault *f)
 {
     g_autoptr(GArray) pages = make_pages(r);
@@ -224,6 +227,7 @@ static status write_pdf(const report_content *r, const char *path, fault *f)
 
 #define SCREEN_DPI 130.0
 
+// Head of the page, heading and preface.
 static void add_head(const report_content *r, GString *html)
 {
     text_append(
@@ -360,6 +364,7 @@ static status add_figure(GString *html, const report_item *item, guint index,
     return STATUS_OK;
 }
 
+// An item with its title and what it is made of.
 static status add_section(const report_content *r, guint index, GString *html,
                           GHashTable *letters, fault *f)
 {
@@ -392,6 +397,7 @@ static void add_contents(const report_content *r, GString *html)
     g_string_append(html, "</ol></nav>\n");
 }
 
+// The page with style, items and script in one file.
 static status write_html(const report_content *r, const char *path, fault *f)
 {
     whole_file file;
@@ -420,6 +426,7 @@ static status write_html(const report_content *r, const char *path, fault *f)
 
 // ==== what it shows
 
+// Every figure and table of the catalogue.
 static status add_catalogue(report_content *r, fault *f)
 {
     const figure_options options = {0};
@@ -454,6 +461,7 @@ static void clear_item(gpointer data)
 
 // ---- scenarios and recipes of one's own
 
+// A scenario of one's own, with its usual panels.
 static status open_scenario_item(report_item *item, const char *name,
                                  run_monitor *monitor, fault *f)
 {
@@ -469,6 +477,7 @@ static status open_scenario_item(report_item *item, const char *name,
     return STATUS_OK;
 }
 
+// A figure that a recipe describes.
 static status open_recipe_item(report_item *item, const char *path, fault *f)
 {
     const figure_options options = {0};
@@ -485,6 +494,7 @@ static status open_recipe_item(report_item *item, const char *path, fault *f)
     return STATUS_OK;
 }
 
+// Scenarios and recipes by their names.
 static status add_named(report_content *r, char *const *names, int count, fault *f)
 {
     for (int i = 0; i < count; i++) {

@@ -68,6 +68,7 @@ static void add_layer(newmark_map *m, figure_series layer)
 
 // ---- the runs
 
+// Computes cells until none is left; several threads share one map.
 static gpointer compute_cells(gpointer data)
 {
     newmark_map *m = data;
@@ -84,6 +85,7 @@ static gpointer compute_cells(gpointer data)
     return NULL;
 }
 
+// Places the cells and their lines, and computes the cells on two threads.
 static void compute_map(newmark_map *m)
 {
     const int columns = m->kind->columns, rows = m->kind->rows;
@@ -117,6 +119,7 @@ static void compute_map(newmark_map *m)
 
 // ---- the picture
 
+// Panels side by side with one vertical axis and one bar of colours.
 static void describe_map_figure(newmark_map *m, const figure_options *o)
 {
     const newmark_kind *kind = m->kind;
@@ -240,6 +243,7 @@ static void add_rings(newmark_map *m)
                                  .radius = 3.6, .no_line = true, .rim = true});
 }
 
+// How far Newmark's force is from the event method's, for the corrected arm.
 status stability_map(const figure_order *order, artwork *out, fault *f)
 {
     static const newmark_kind kind = {.change = "method.name=event",
@@ -308,6 +312,7 @@ static double printed_peak(const newmark_map *m, int panel, double beta, double 
     return force;
 }
 
+// The largest force of the printed arm.
 status printed_stability_map(const figure_order *order, artwork *out, fault *f)
 {
     static const newmark_kind kind = {.columns = 20,

@@ -93,6 +93,7 @@ static char *value_with_unit(const parameters *p, const parameter_info *info)
     return text_printf("%.6g\u2009%s", value, sign);
 }
 
+// Table 2.1.
 status table_motor(const figure_order *order, artwork *out, fault *f)
 {
     static const table_column columns[] = {{"Symbol", 0.75},
@@ -169,6 +170,7 @@ static status find_fastest_mode(double *fastest, fault *f)
     return STATUS_OK;
 }
 
+// Table 3.1.
 status table_stability(const figure_order *order, artwork *out, fault *f)
 {
     double fastest = 0;
@@ -202,6 +204,7 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
 
 // ---- 3.2: the algorithm
 
+// Table 3.2.
 status table_algorithm(const figure_order *order, artwork *out, fault *f)
 {
     static const char *const rows[][3] = {
@@ -274,6 +277,7 @@ static void add_values(table_page *t, const char *name, const double *values,
     table_add_row(t, (const char *const *)cells);
 }
 
+// A model's values, and below them the differences from the thesis.
 static void add_model(table_page *t, const table_row *row, double scale,
                       const char *format)
 {
@@ -338,6 +342,7 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
 
 // ---- how near the computed tables come
 
+// How near Tables 4.1 to 4.3 come out, row by row.
 status table_errors(const figure_order *order, artwork *out, fault *f)
 {
     const thesis_tables *all = computed_tables(f);
@@ -367,6 +372,7 @@ status table_errors(const figure_order *order, artwork *out, fault *f)
 
 // ---- the lab's own parameters
 
+// Parameters of one group with the defaults of both models.
 table_page *defaults_table(int *next)
 {
     static const table_column columns[] = {{"Parameter", 3.7},

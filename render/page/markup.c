@@ -81,6 +81,7 @@ static void begin_index(GString *out, const line_letters *l, double rise)
                 (int)(rise * l->size * 1024));
 }
 
+// What stands in the place of a match of text_translate.
 static gboolean translate(const GMatchInfo *match, GString *out, gpointer context)
 {
     // a thin space stands between a number and its unit: its twin does not break, and
@@ -117,6 +118,7 @@ char *text_translate(const char *markup, double size, double scale)
     return text_replaced(&words, markup, translate, &(line_letters){size, scale});
 }
 
+// Blanks become dots, digits and minus signs raised ones; a slash stays.
 char *text_unit(const char *unit)
 {
     static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3",
@@ -169,6 +171,7 @@ char *text_quantity(double value, int digits, const char *unit)
     return text_printf("%s%s\u2009%s", text_sign(value), number, shown);
 }
 
+// Numbers that %g writes with an exponent get a power of ten.
 char *text_number(double value, int digits)
 {
     assert(digits > 0);
@@ -190,6 +193,7 @@ char *text_number(double value, int digits)
     return text_printf("%s%s\u00b7%s", sign, number, ten);
 }
 
+// The first words of a sentence, with a capital letter.
 char *text_label(const char *description)
 {
     g_autofree char *valid = g_utf8_make_valid(description, -1);

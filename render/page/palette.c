@@ -44,6 +44,8 @@ const palette *palette_of(figure_theme theme)
     return &themes[theme];
 }
 
+// Without colours series go through three greys by their places in a panel, two of
+// each.
 colour palette_series(figure_theme theme, int slot, int place)
 {
     if (theme == THEME_MONO) {
@@ -65,6 +67,7 @@ int palette_slot(int index)
     return slots[index % PALETTE_SLOTS];
 }
 
+// A share of viridis, between the two nearest of nine points, or a grey.
 colour palette_shade(figure_theme theme, double share)
 {
     if (theme == THEME_MONO) {
@@ -98,6 +101,7 @@ void set_colour(cairo_t *cr, colour c)
     cairo_set_source_rgb(cr, c.red, c.green, c.blue);
 }
 
+// Dashes are multiples of the line's width, so that patterns look alike at any width.
 void set_line_style(cairo_t *cr, line_style style, double width)
 {
     assert(width > 0);

@@ -39,6 +39,7 @@ static void write_bytes(png_structp png, png_bytep bytes, png_size_t length)
     fwrite(bytes, 1, length, png_get_io_ptr(png));
 }
 
+// Adds the notes as texts of a PNG.
 static void set_notes(png_structp png, png_infop info, const png_note *notes, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -86,6 +87,7 @@ static bool has_alpha(cairo_surface_t *surface)
     return cairo_image_surface_get_format(surface) == CAIRO_FORMAT_ARGB32;
 }
 
+// Writes the pixels of an image surface row by row.
 static void write_pixel_rows(png_structp png, cairo_surface_t *surface,
                              unsigned char *row)
 {
@@ -100,6 +102,8 @@ static void write_pixel_rows(png_structp png, cairo_surface_t *surface,
     }
 }
 
+// libpng reports errors by a long jump to the place of setjmp, after `fail` has kept
+// them.
 status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
                       const png_note *notes, int note_count, fault *f)
 {
@@ -161,6 +165,7 @@ const char *picture_ending(const char *path)
     return text_or(dot, path + strlen(path));
 }
 
+// By the ending of a file, or by a word alone.
 picture_format picture_format_of(const char *path)
 {
     static const struct {
@@ -257,6 +262,7 @@ static status paint_surface(cairo_surface_t *surface, const picture *p, bool fin
     return check_drawing(ended, cairo_surface_status(surface), f);
 }
 
+// Draws on an image of as many pixels as the resolution asks for, and writes that.
 status picture_write_png(const picture *p, FILE *stream, fault *f)
 {
     double dpi = DEFAULT_DPI;
@@ -298,6 +304,7 @@ static void set_metadata(cairo_surface_t *surface, cairo_pdf_metadata_t what,
     }
 }
 
+// Pictures as the pages of a PDF in a stream, with the metadata of the first.
 static status write_pdf_pages(FILE *stream, const picture *p, int count, fault *f)
 {
     cairo_surface_t *surface =
@@ -360,6 +367,7 @@ static GString *svg_metadata(const picture *p)
     return out;
 }
 
+// Lets cairo write an SVG into memory and adds the metadata to its root.
 char *picture_svg(const picture *p, fault *f)
 {
     char *numbered = NULL;
@@ -402,6 +410,7 @@ static status write_svg(const picture *p, FILE *stream, fault *f)
     return STATUS_OK;
 }
 
+// The extension decides how it is drawn.
 status picture_write(const picture *p, const char *path, fault *f)
 {
     // only a name that tells its format

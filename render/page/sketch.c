@@ -59,6 +59,7 @@ static double frame_letters(const sketch_frame *frame, double size)
     return page_letters(frame->look.letters, size) / page_scale(frame);
 }
 
+// The title as a text that is to be set.
 static text_block title_block(const sketch_frame *frame, const char *markup)
 {
     return (text_block){.markup = markup,
@@ -126,6 +127,7 @@ static void draw_frame_texts(sketch *s)
     }
 }
 
+// Draws page, title and caption, and scales cr for what follows.
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame,
                     figure_report *report, fault *f)
 {
@@ -277,6 +279,7 @@ void sketch_measure(const sketch *s, point from, point to)
     draw_head(s, from, direction_of(from, to) + G_PI, SMALL_HEAD);
 }
 
+// An arc that ends within its head, if it has one.
 void sketch_arc(const sketch *s, arc a, int slot)
 {
     assert(a.radius > 0);
@@ -305,6 +308,7 @@ void sketch_arc(const sketch *s, arc a, int slot)
     }
 }
 
+// A full circle, or one that is filled with the page's colour.
 void sketch_disc(const sketch *s, point centre, double radius, int slot, bool filled)
 {
     assert(radius >= 0);
@@ -322,6 +326,7 @@ void sketch_disc(const sketch *s, point centre, double radius, int slot, bool fi
 
 // ---- parts
 
+// A wide line with a narrower, lighter one over it.
 void sketch_bar(const sketch *s, point from, point to, double thickness)
 {
     assert(thickness > 0);
@@ -337,6 +342,7 @@ void sketch_bar(const sketch *s, point from, point to, double thickness)
     cairo_stroke(s->cr);
 }
 
+// A circle of which two opposite quarters are filled.
 void sketch_mass_point(const sketch *s, point at)
 {
     const double r = 3;
@@ -349,6 +355,7 @@ void sketch_mass_point(const sketch *s, point at)
     }
 }
 
+// Two and a half turns from near the centre outwards.
 void sketch_spiral(const sketch *s, point centre, double radius, int slot)
 {
     enum { POINTS = 90 };
@@ -417,6 +424,7 @@ void sketch_resistor(const sketch *s, point from, point to)
     draw_zigzag(s, &g, 3, 4, (g.length - 22) / 2);
 }
 
+// A line with short slanted ones on one side.
 void sketch_wall(const sketch *s, point from, point to)
 {
     const double spacing = 5, depth = 6;
@@ -454,6 +462,7 @@ void sketch_text(sketch *s, double size, point at, anchor part, const char *form
     draw_block(s, &t, at, part, s->colours->text);
 }
 
+// Wraps a text at its width; a line that is shorter is aligned within it.
 void sketch_wrapped(sketch *s, point at, const text_block *text)
 {
     assert(text->width > 0);

@@ -116,6 +116,8 @@ static void append_number(GString *out, double value, int decimals)
     }
 }
 
+// What stands in the place of something verbose in a tag; `of_lines` tells whether it
+// is a path of lines.
 static gboolean shorten(const GMatchInfo *match, GString *out, gpointer of_lines)
 {
     const int group = g_match_info_get_match_count(match) - 1;
@@ -192,6 +194,7 @@ static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
     return FALSE;
 }
 
+// Renames ids, drops the metadata, shortens tags and refers to letters that are known.
 char *svg_for_page(const char *svg, const char *prefix, GHashTable *known)
 {
     const char *root = text_or(strstr(svg, "<svg"), svg);

@@ -161,6 +161,7 @@ static double space_over(int row)
     return CELL_SPACE / 2;
 }
 
+// Height of a row with the space round its texts: that of its highest cell.
 static double row_height(const table_layout *l, const table_page *t, int row)
 {
     double most = 0;
@@ -176,6 +177,7 @@ static double row_height(const table_layout *l, const table_page *t, int row)
     return most + 2 * space_over(row);
 }
 
+// Widths of the columns, and the height of all rows.
 static void lay_out(table_layout *l, const table_page *t, PangoContext *context)
 {
     // the frame is laid out at its own width: nothing is scaled
@@ -201,6 +203,7 @@ void table_size(const table_page *t, double *width, double *height)
     sketch_size(&l.frame, width, height);
 }
 
+// The cells of a row side by side, from y downwards.
 static void draw_row(sketch *s, const table_layout *l, const table_page *t, int row,
                      double y)
 {
@@ -234,6 +237,7 @@ static void draw_rule(const sketch *s, double y, double width)
     sketch_line(s, (point){s->left, y}, (point){s->right, y}, width, SKETCH_INK);
 }
 
+// Row by row from above, on a page with title and caption.
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f)
 {
     sketch s;
@@ -280,6 +284,7 @@ static bool has_groups(const table_page *t)
     return false;
 }
 
+// A heading row, then the rows of cells.
 void table_write_csv(const table_page *t, csv_writer *csv)
 {
     const bool grouped = has_groups(t);
@@ -304,6 +309,7 @@ void table_write_csv(const table_page *t, csv_writer *csv)
     }
 }
 
+// The cells of a row as HTML.
 static void add_html_cells(GString *html, const table_page *t, int row)
 {
     // Pango's <span> and <sub> are HTML's; its colours and sizes are not used in cells

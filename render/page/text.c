@@ -46,6 +46,7 @@ status text_check_family(const char *family, fault *f)
     return STATUS_OK;
 }
 
+// A context in which letters do not depend on what they are drawn on.
 PangoContext *text_context_create(void)
 {
     PangoContext *context =
@@ -79,6 +80,7 @@ static void balance(PangoLayout *layout, double width)
     pango_layout_set_width(layout, (int)(wide * PANGO_SCALE));
 }
 
+// Sets the font, then the words, then how lines are broken.
 PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 {
     static const PangoAlignment alignments[] = {PANGO_ALIGN_LEFT, PANGO_ALIGN_CENTER,
@@ -126,6 +128,7 @@ text_size text_measure(PangoContext *context, const text_block *t)
                        (double)logical.height / PANGO_SCALE};
 }
 
+// Measures the text, moves it so that its anchor is at (x, y), and draws it.
 figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x,
                      double y, anchor part, colour c)
 {
@@ -157,6 +160,7 @@ double page_letters(double letters, double size)
     return LETTERS_LEAST;
 }
 
+// Keeps the beginning of a text with its place and the size of its smallest letters.
 void report_add_text(figure_report *report, const char *markup, double size,
                      figure_rect place)
 {

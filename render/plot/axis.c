@@ -66,6 +66,7 @@ bool scale_take_ends(axis_scale *s, const figure_axis *from)
     return !scale_is_empty(s);
 }
 
+// Puts equal ends apart, and a share of the range round both.
 void scale_widen(axis_scale *s, double share)
 {
     assert(share >= 0);
@@ -156,6 +157,7 @@ static void choose_decades(axis *a, int wanted)
     }
 }
 
+// Ticks as the axis gives them, powers of ten, or round values.
 void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
 {
     a->from = from;
@@ -179,7 +181,8 @@ void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
     }
 }
 
-int axis_wish(double length, double spacing, int least, int most)
+// As many ticks as the length has room for, within both bounds.
+int axis_tick_count(double length, double spacing, int least, int most)
 {
     double count = length / spacing;
     if (count < least) {
@@ -214,6 +217,7 @@ static int minor_even(const axis *a, double length, double *at)
     return count;
 }
 
+// Between decades the whole numbers, on linear axes parts of a step.
 int axis_minor_ticks(const axis *a, double length, double at[AXIS_MINOR])
 {
     const axis_scale *s = &a->scale;
@@ -264,6 +268,7 @@ static char *unit_markup(const char *unit, int exponent)
     return text_printf("(%s\u2009%s)", factor + strlen("\u00d7"), unbroken);
 }
 
+// "Contact force (N)", or with a factor "Contact force (10^3 N)".
 char *axis_label_text(const char *label, const char *unit, int exponent)
 {
     if (!has_text(unit) && exponent == 0) {

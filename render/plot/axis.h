@@ -54,7 +54,7 @@ typedef struct axis {
 void axis_choose_ticks(axis *a, const figure_axis *from, int wanted);
 
 // The number of ticks of an axis of the given length, one every `spacing` [pt].
-int axis_wish(double length, double spacing, int least, int most);
+int axis_tick_count(double length, double spacing, int least, int most);
 
 // Values of the minor ticks of an axis of the given length [pt]; none if they would be
 // too close.

@@ -18,6 +18,7 @@ double plane_y(const plane *p, double y)
     return p->box.y + p->box.height * ((p->y.high - at) / (p->y.high - p->y.low));
 }
 
+// A value of an array of doubles that lie `stride` bytes apart.
 static double value_at(const figure_series *s, const double *values, size_t index)
 {
     double value;
@@ -102,6 +103,7 @@ static void pen_lift(pen *p)
     p->has_point = p->moved = false;
 }
 
+// Draws the part of the line to q that lies inside.
 static void pen_to(pen *p, point q)
 {
     q.x = fmax(-FARTHEST, fmin(FARTHEST, q.x));
@@ -149,6 +151,7 @@ typedef struct column {
     numbered first, low, high, last;
 } column;
 
+// A further point of a column.
 static void column_add(column *c, numbered q)
 {
     c->count++;
@@ -161,6 +164,7 @@ static void column_add(column *c, numbered q)
     }
 }
 
+// Hands the points of a column that matter to the pen, and empties it.
 static void column_flush(column *c, pen *p)
 {
     if (c->count == 0) {
@@ -197,6 +201,8 @@ static bool x_ascends(const figure_series *s)
     return true;
 }
 
+// Hands the strokes of a series to a sink: cut at the plane's edge, with a gap at
+// every missing point, and where points are many only those that show in their column.
 void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void *context)
 {
     pen tip = {.left = p->box.x - CLIP_SPACE,

@@ -34,6 +34,7 @@ void put_label(drawing *d, const char *markup, double size, double x, double y, 
     draw_text(d, figure_text_of(d, markup, size), x, y, at, d->style.colours->text);
 }
 
+// Turned by a quarter to the left about the middle of its upper edge.
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c)
 {
     const text_size size = text_measure(d->context, &t);
@@ -97,6 +98,7 @@ static char *fitting_title(const drawing *d, const axis *a, double length)
     return title;
 }
 
+// Of the title as it is wrapped beside the axis.
 double axis_title_height(const drawing *d, const axis *a, double length)
 {
     g_autofree char *title = fitting_title(d, a, length);
@@ -128,6 +130,7 @@ static void draw_horizontals(const drawing *d, const plane *p, const double *val
     }
 }
 
+// Lines across the panel at the ticks of the vertical axis.
 void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y)
 {
     const figure_rect *box = &p->box;
@@ -168,6 +171,7 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
     }
 }
 
+// Ticks, the lines of the axes, and labels of ticks.
 void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_look look)
 {
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
@@ -198,6 +202,7 @@ bool has_y_labels(const drawing *d, const panel_layout *l)
     return !d->fig->shared_y || l->column == 0;
 }
 
+// The title of the vertical axis, upwards at the left of everything.
 void draw_y_title(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;

@@ -23,6 +23,7 @@ static void end_thing(gpointer kept)
     k->end(k->thing);
 }
 
+// Panels point to series of the same block, texts go to what it keeps.
 owned_figure *owned_figure_create(int panels, const char *format, ...)
 {
     owned_figure *o = g_new0(owned_figure, 1);
@@ -83,6 +84,7 @@ const char *owned_figure_printf(owned_figure *o, const char *format, ...)
     return owned_figure_keep(o, text);
 }
 
+// What the look leaves open stays as the figure has it.
 void figure_take_look(figure *fig, const page_look *look)
 {
     // the size; another width has the height that the panels need
@@ -129,6 +131,8 @@ static double wrapped_height(const figure *fig, const char *markup, double size,
     return text_measure(context, &t).height + 4;
 }
 
+// The height is estimated where none is given: panels by weight, and the texts round
+// them.
 void figure_size(const figure *fig, double *width, double *height)
 {
     // a page that is half as wide has panels that are a fifth lower: 0.5^0.32 = 0.8
@@ -169,6 +173,7 @@ void figure_size(const figure *fig, double *width, double *height)
 
 // ---- the whole
 
+// The heading above a panel, and the remark in its middle.
 static void draw_panel_texts(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
@@ -222,6 +227,7 @@ static void draw_panel(drawing *d, int index)
     }
 }
 
+// Background, marks, texts of the page, then each panel.
 static void draw_all(drawing *d)
 {
     const figure *fig = d->fig;
@@ -264,6 +270,7 @@ static void draw_all(drawing *d)
     draw_measure(d);
 }
 
+// Numbers of panels and series that there is room for.
 static status check_description(const figure *fig, fault *f)
 {
     FAULT_IF(fig->panel_count < 1 || fig->panel_count > FIGURE_PANELS, f,
@@ -280,6 +287,7 @@ static status check_description(const figure *fig, fault *f)
     return STATUS_OK;
 }
 
+// Lays out, then draws.
 status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault *f)
 {
     TRY(check_description(fig, f));
@@ -435,6 +443,7 @@ static void write_instant(long_form *t, const char *panel, const char *series, d
     write_point(t, x, (double)NAN, (double)NAN);
 }
 
+// Marks and shaded intervals as rows of their own.
 static void write_marks(long_form *t, const figure *fig)
 {
     for (int i = 0; i < fig->mark_count; i++) {
@@ -469,6 +478,7 @@ static void write_axis_heading(long_form *t, const figure_axis *a, const char *o
     write_name(t, name, a->label, a->unit);
 }
 
+// The heading, then all panels below each other.
 void figure_write_csv(const figure *fig, csv_writer *csv)
 {
     // the heading: panel, series, and both axes

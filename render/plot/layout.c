@@ -32,6 +32,7 @@ static status widen_range(axis_scale *s, double share, const figure_axis *from, 
     return STATUS_OK;
 }
 
+// The ends of the horizontal axis: given ones, or from the data of all panels.
 static status choose_x_range(drawing *d, fault *f)
 {
     const figure *fig = d->fig;
@@ -67,6 +68,8 @@ static void include_peak_labels(const figure *fig, axis_scale *y)
     }
 }
 
+// The ends of a panel's vertical axis: given ones, or from the data that the
+// horizontal one shows.
 static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
 {
     const figure_panel *panel = l->panel;
@@ -127,6 +130,7 @@ double figure_width(const figure *fig)
     return DEFAULT_WIDTH;
 }
 
+// As many columns as are asked for, as long as each is wide enough.
 int figure_columns(const figure *fig)
 {
     const int most = (int)(figure_width(fig) / COLUMN_WIDTH);
@@ -145,6 +149,7 @@ int figure_columns(const figure *fig)
     return most;
 }
 
+// Space that a panel needs at its left for ticks, labels and the axis's title.
 static double left_space(const drawing *d, const panel_layout *l)
 {
     if (!has_y_labels(d, l)) {
@@ -249,6 +254,8 @@ static void row_needs(const drawing *d, int row, double *above, double *weight)
     }
 }
 
+// A text above or below the panels, as wide as they are or on a narrow page as the
+// page.
 static text_block frame_text(const drawing *d, const char *markup, double size,
                              double *left)
 {
@@ -315,6 +322,7 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
     *bottom = end;
 }
 
+// Shares what height is left among the rows of panels, by weight.
 static void place_rows(drawing *d, int mark_rows)
 {
     double y, bottom, weights = 0, above, weight;
@@ -352,6 +360,7 @@ typedef struct ink_sink {
     double x, y;
 } ink_sink;
 
+// Adds the strokes of a curve to the ink of a panel.
 static void mark_ink(void *context, stroke_kind kind, double x, double y)
 {
     ink_sink *s = context;
@@ -404,6 +413,7 @@ static bool fill_panels(drawing *d, placement *grid)
 
 // ---- the whole
 
+// Places rows and columns and chooses ticks, each of which depends on the others.
 static void place_all(drawing *d, int *mark_rows)
 {
     // sides depend on heights through the ticks, and heights on sides through wrapped
@@ -419,15 +429,16 @@ static void place_all(drawing *d, int *mark_rows)
                 spacing = DECADE_TICK;
             }
             l->y.scale = l->plane.y;
-            axis_choose_ticks(&l->y, &l->panel->y, axis_wish(height, spacing, 2, 8));
+            axis_choose_ticks(&l->y, &l->panel->y,
+                              axis_tick_count(height, spacing, 2, 8));
             if (l->panel->colours != NULL) {
                 axis_choose_ticks(&l->colours, &l->panel->colours->axis,
-                                  axis_wish(height, BAR_TICK, 2, 8));
+                                  axis_tick_count(height, BAR_TICK, 2, 8));
             }
         }
         place_columns(d);
         double width = d->column[0].right - d->column[0].left;
-        axis_choose_ticks(&d->x, &d->fig->x, axis_wish(width, X_TICK, 2, 12));
+        axis_choose_ticks(&d->x, &d->fig->x, axis_tick_count(width, X_TICK, 2, 12));
 
         // labels of marks above the panels
         if (d->marks_inside) {
@@ -438,6 +449,7 @@ static void place_all(drawing *d, int *mark_rows)
     }
 }
 
+// Fails if a panel is too small to be read.
 static status check_room(const drawing *d, fault *f)
 {
     const int panels = d->fig->panel_count;
@@ -455,6 +467,7 @@ static status check_room(const drawing *d, fault *f)
     return STATUS_OK;
 }
 
+// Ranges first, then places, until every legend has one.
 status layout_figure(drawing *d, fault *f)
 {
     const figure *fig = d->fig;

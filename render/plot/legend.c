@@ -93,8 +93,8 @@ static void divide_inset(const drawing *d, panel_layout *l)
     // ticks, and the box that leaves room for their labels
     l->inset_x.scale = p->x;
     l->inset_y.scale = p->y;
-    axis_choose_ticks(&l->inset_x, &d->fig->x, axis_wish(l->inset.width, 35, 2, 5));
-    axis_choose_ticks(&l->inset_y, &panel->y, axis_wish(l->inset.height, 15, 2, 4));
+    axis_choose_ticks(&l->inset_x, &d->fig->x, axis_tick_count(l->inset.width, 35, 2, 5));
+    axis_choose_ticks(&l->inset_y, &panel->y, axis_tick_count(l->inset.height, 15, 2, 4));
     double left = widest_tick(d, &l->inset_y, d->style.small) + TICK_SPACE + 4;
     double wide = widest_tick(d, &l->inset_x, d->style.small);
     double width = l->inset.width - left - wide / 2;
@@ -114,6 +114,7 @@ static void divide_inset(const drawing *d, panel_layout *l)
                            l->inset.height - 3 - line - TICK_SPACE - 2};
 }
 
+// Where the inset covers no curve, in the largest of three sizes that fits.
 void place_inset(const drawing *d, panel_layout *l, placement *grid)
 {
     // the largest that covers no curve
@@ -144,6 +145,7 @@ void place_inset(const drawing *d, panel_layout *l, placement *grid)
     }
 }
 
+// The inset as a panel of its own, and a frame round the part that it enlarges.
 void draw_inset(drawing *d, const panel_layout *l)
 {
     const plane *p = &l->inset_plane;
@@ -275,6 +277,7 @@ bool place_legend(drawing *d, panel_layout *l, const placement *grid)
 
 // ---- strokes
 
+// The legend at its place, on a background where it stands above the panel.
 void draw_panel_legend(drawing *d, const panel_layout *l)
 {
     if (l->legend.width > 0 && !l->legend_inside && !d->fig->transparent) {
@@ -291,6 +294,7 @@ void draw_panel_legend(drawing *d, const panel_layout *l)
 
 // ---- one for all panels
 
+// The entries of all panels, or of the figure's key, in rows from the left.
 double common_legend(drawing *d, bool draw)
 {
     const panel_layout key = {.panel = d->fig->key};

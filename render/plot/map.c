@@ -6,6 +6,7 @@
 #include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
 
+// Finds where the level crosses the sides and joins the crossings in pairs.
 int contour_square(const double z[4], double level, contour_piece pieces[2])
 {
     assert(isfinite(level));
@@ -94,6 +95,7 @@ void map_include(const figure_map *map, axis_scale *x, axis_scale *y)
     include_edges(y, map->y, map->rows);
 }
 
+// The ends of the colours: given ones, or from all cells and markers.
 void map_choose_scale(panel_layout *l)
 {
     const figure_panel *panel = l->panel;
@@ -165,6 +167,7 @@ static double page_y(const plane *p, double at)
     return p->box.y + p->box.height * (p->y.high - at) / (p->y.high - p->y.low);
 }
 
+// A rectangle in its colour for each cell.
 static void draw_cells(const drawing *d, const panel_layout *l)
 {
     const figure_map *map = l->panel->map;
@@ -203,6 +206,7 @@ static void set_contour_line(const drawing *d, const panel_layout *l, double lev
     cairo_set_source_rgba(d->cr, dark, dark, dark, 0.85);
 }
 
+// The contour line of a level, square by square.
 static void draw_contour(const drawing *d, const panel_layout *l, double level)
 {
     const figure_map *map = l->panel->map;
@@ -228,6 +232,7 @@ static void draw_contour(const drawing *d, const panel_layout *l, double level)
     cairo_stroke(d->cr);
 }
 
+// Cells, and contour lines over them.
 void draw_panel_map(drawing *d, const panel_layout *l)
 {
     const figure_map *map = l->panel->map;
@@ -281,6 +286,7 @@ static void fill_bar(const drawing *d, const panel_layout *l, const figure_rect 
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
 }
 
+// The colours as a bar at the right of the panel, with ticks and a title.
 void draw_colour_bar(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;

@@ -199,6 +199,7 @@ static bool find_at_point(const drawing *d, const placement *grid, int index,
     return false;
 }
 
+// The place of each label whose mark has a point.
 bool place_pointed_marks(drawing *d, placement *grid)
 {
     bool placed = true;
@@ -220,6 +221,7 @@ bool place_pointed_marks(drawing *d, placement *grid)
     return placed;
 }
 
+// All labels inside the first panel, or none.
 bool place_marks_inside(drawing *d, placement *grid)
 {
     figure_rect taken[INSIDE_MOST];
@@ -302,6 +304,7 @@ static figure_rect note_place(const drawing *d, const panel_layout *l,
                          width, height};
 }
 
+// Where levels, notes and marks are in a panel, so that nothing else covers them.
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
 {
     const figure_rect *box = &l->plane.box;
@@ -336,6 +339,7 @@ void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
 
 // ---- strokes
 
+// Shades the intervals behind the data.
 void draw_intervals(const drawing *d, const plane *p)
 {
     const figure_rect *box = &p->box;
@@ -367,6 +371,8 @@ static void set_mark_line(const drawing *d)
     cairo_set_dash(d->cr, pattern, 2, 0);
 }
 
+// Leaves legends and labels out of what may be drawn on: the even-odd rule cuts their
+// rectangles out of the page's.
 void clip_out_labels(const drawing *d)
 {
     cairo_new_path(d->cr);
@@ -425,6 +431,7 @@ static void draw_dot(const drawing *d, const plane *p, double x, double y)
     cairo_fill(d->cr);
 }
 
+// Dots of marks that have a point, with the labels that stand at it.
 void draw_points(drawing *d)
 {
     const plane *p = &d->panels[0].plane;
@@ -441,6 +448,7 @@ void draw_points(drawing *d)
     }
 }
 
+// A line with two heads from one x to another, with its label above.
 void draw_measure(drawing *d)
 {
     const figure_measure *m = d->fig->measure;
@@ -513,6 +521,7 @@ void draw_marks(drawing *d)
     }
 }
 
+// Dashed lines across a panel, with their labels.
 void draw_panel_levels(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
@@ -539,6 +548,7 @@ void draw_panel_levels(drawing *d, const panel_layout *l)
     }
 }
 
+// Dots with their texts.
 void draw_notes(drawing *d, const panel_layout *l)
 {
     for (int i = 0; i < l->panel->note_count; i++) {

@@ -53,6 +53,7 @@ typedef struct pixel_column {
     bool any;
 } pixel_column;
 
+// A further point of a column.
 static void add_to_column(pixel_column *c, double y)
 {
     if (c->any) {
@@ -144,6 +145,7 @@ static void trace_rows(cairo_t *cr, const pane_frame *f, const pane_curve *c,
     }
 }
 
+// By columns of pixels where rows are many, else point by point.
 void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
 {
     assert(f->to > f->from && f->high > f->low && f->width > 0 && f->height > 0);

@@ -20,6 +20,7 @@ static void add_ink(placement *g, int row, int column, int weight)
     }
 }
 
+// Marks the cells along a line, in steps of less than a cell.
 void placement_line(placement *g, double x0, double y0, double x1, double y1, int weight)
 {
     double across = fabs(x1 - x0) / g->box.width * PLACEMENT_COLUMNS;
@@ -32,6 +33,7 @@ void placement_line(placement *g, double x0, double y0, double x1, double y1, in
     }
 }
 
+// Marks every cell that a rectangle touches.
 void placement_block(placement *g, figure_rect r, int weight)
 {
     int last_row = cell_row(g, r.y + r.height),
@@ -43,6 +45,7 @@ void placement_block(placement *g, figure_rect r, int weight)
     }
 }
 
+// The sum over every cell that a rectangle touches.
 double placement_ink(const placement *g, figure_rect r)
 {
     double sum = 0;

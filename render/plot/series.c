@@ -101,6 +101,7 @@ static series_pen busy_pen(const drawing *d, const panel_layout *l, int index)
     return pen;
 }
 
+// The pen of a series by what it is: of a run, a busy line, or one of a few.
 static series_pen pen_of(const drawing *d, const panel_layout *l, int index)
 {
     const figure_series *s = &l->panel->series[index];
@@ -138,6 +139,7 @@ typedef struct pen_path {
     bool up;
 } pen_path;
 
+// Counts the turns of a line and its length.
 static void follow_pen(void *context, stroke_kind kind, double x, double y)
 {
     pen_path *p = context;
@@ -258,6 +260,7 @@ typedef struct stroke_context {
     double radius; // of a lone point
 } stroke_context;
 
+// Adds a piece of a curve to the path; a lone point is a dot.
 static void stroke(void *context, stroke_kind kind, double x, double y)
 {
     stroke_context *s = context;
@@ -315,6 +318,7 @@ static void draw_markers(const drawing *d, const panel_layout *l, const plane *p
     }
 }
 
+// Series by series, so that later ones lie over earlier ones.
 void draw_series(const drawing *d, const panel_layout *l, const plane *p)
 {
     cairo_save(d->cr);
@@ -330,6 +334,7 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
     cairo_restore(d->cr);
 }
 
+// A short piece of its line with a marker in the middle.
 void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double y)
 {
     const figure_series *s = &l->panel->series[index];
@@ -364,6 +369,7 @@ static void draw_upward_arrow(cairo_t *cr, double x, double base, double length)
     cairo_fill(cr);
 }
 
+// The size of the largest impulse of a panel; 0 without one.
 static double largest_impulse(const figure_panel *panel)
 {
     double largest = 0;
@@ -489,6 +495,7 @@ static void label_impulses(drawing *d, const panel_layout *l, double base)
     }
 }
 
+// A base line with an arrow for each impulse, their sizes, and what they are.
 void draw_impulses(drawing *d, const panel_layout *l)
 {
     const figure_panel *panel = l->panel;

@@ -12,6 +12,7 @@
 
 // ==== robust: the distribution of the overshoot
 
+// For each law the share of runs over the overshoot that they stay below.
 owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
     assert(t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
@@ -52,6 +53,7 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 
 // ==== tune: how the search went
 
+// The value of every evaluation, and the least so far.
 owned_figure *tune_figure_create(const tuning *t, const char *changes)
 {
     owned_figure *o = owned_figure_create(1, "%s: tuned%s", t->asked.base->name, changes);
@@ -118,6 +120,7 @@ static const double *add_channel(owned_figure *o, int panel, const recorded_trac
     return residual;
 }
 
+// Residuals over time, in a panel for each recording.
 owned_figure *identify_figure_create(const identification *id)
 {
     assert(id->trace_count > 0 && id->trace_count <= FIGURE_PANELS);
@@ -198,6 +201,7 @@ static double *phases_of(owned_figure *o, const linear_response *r)
     return phase;
 }
 
+// Gain and phase over the frequency.
 owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, int count)
 {
     assert(count >= 1 && count <= FIGURE_PANELS);
@@ -260,6 +264,7 @@ static void add_unit_circle(owned_figure *o)
                                      .colour = SLOT_BLACK, .style = LINE_DASHED});
 }
 
+// The loop gain in the complex plane, with the circle of size 1.
 owned_figure *nyquist_figure_create(const scenario *s, const linear_response *loop)
 {
     static const double critical[] = {-1, 0};

@@ -28,6 +28,7 @@ typedef struct varied {
 
 // ---- what pictures of a sweep's numbers have in common with others
 
+// The more points, the smaller each [pt].
 double marker_radius(size_t points)
 {
     if (points > 500) {
@@ -79,6 +80,7 @@ static size_t place_among(const double *values, size_t count, double value)
     return (size_t)(found - values);
 }
 
+// The map of values over a grid: NULL where points fill less than half of it.
 figure_map *figure_grid(owned_figure *o, const double *x, const double *y,
                         const double *z, size_t count)
 {
@@ -379,6 +381,7 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f)
     return text_check_font(f);
 }
 
+// Runs in which the quantity did not occur.
 static size_t count_missing(const sweep_picture *p)
 {
     size_t missing = 0;
@@ -426,6 +429,7 @@ static void describe_two_parameters(owned_figure *o, const sweep_picture *p,
     describe_words(o, p, both, words);
 }
 
+// A title with quantity and runs, axes of what was varied, and the runs' values.
 owned_figure *sweep_figure_create(const sweep_picture *p)
 {
     static const char *const sampled[] = {[SWEEP_GRID] = "",

@@ -22,11 +22,11 @@ typedef struct labelling {
     double score;
 } labelling;
 
-// What ticks are wanted for.
-typedef struct wish {
+// The axis that ticks are wanted for, and how many.
+typedef struct tick_request {
     double low, high; // ends of the axis
     int count;
-} wish;
+} tick_request;
 
 static double step_unit(const labelling *l)
 {
@@ -98,7 +98,7 @@ static double density_most(int count, int wanted)
 }
 
 // Tries every start for the given step and count.
-static void try_starts(labelling l, const wish *w, labelling *best)
+static void try_starts(labelling l, const tick_request *w, labelling *best)
 {
     double unit = step_unit(&l), step = unit * l.j;
     double from = (floor(w->high / step) - (l.count - 1)) * l.j,
@@ -117,7 +117,7 @@ static void try_starts(labelling l, const wish *w, labelling *best)
 }
 
 // Tries the powers of ten, from the one that just spans the data upwards.
-static void try_powers(labelling l, const wish *w, labelling *best)
+static void try_powers(labelling l, const tick_request *w, labelling *best)
 {
     double nice = 0.1 * nice_tenths[l.nice];
     l.power = (int)ceil(log10((w->high - w->low) / (l.count + 1) / l.j / nice));
@@ -135,7 +135,8 @@ static void try_powers(labelling l, const wish *w, labelling *best)
     }
 }
 
-static labelling best_labelling(const wish *w)
+// The labelling with the best score, by a search that ends where no other could win.
+static labelling best_labelling(const tick_request *w)
 {
     labelling best = {.score = -100}; // below any that lies within the axis
 
@@ -178,7 +179,7 @@ static int decimals_needed(const ticks *t)
 #define FARTHEST 1e100
 
 // Puts the limits in order and apart; false if they are no numbers, or too large ones.
-static bool straighten(wish *w)
+static bool order_limits(tick_request *w)
 {
     if (!(fabs(w->low) <= FARTHEST && fabs(w->high) <= FARTHEST)) {
         return false;
@@ -207,7 +208,7 @@ static bool straighten(wish *w)
 
 // Values of all ticks: those of a labelling, and every other multiple of its step on the
 // axis.
-static void fill_values(ticks *t, const labelling *best, const wish *w)
+static void fill_values(ticks *t, const labelling *best, const tick_request *w)
 {
     const double unit = step_unit(best), slack = 1e-9 * (w->high - w->low);
     double first = best->start;
@@ -243,12 +244,13 @@ static int label_exponent(const ticks *t)
     return 0;
 }
 
+// The best labelling's values, with what their labels need.
 void ticks_between(ticks *t, double low, double high, int wanted)
 {
-    wish w = {low, high, wanted};
+    tick_request w = {low, high, wanted};
     memset(t, 0, sizeof *t);
     t->minor = 1;
-    if (!straighten(&w)) {
+    if (!order_limits(&w)) {
         return;
     }
     const labelling best = best_labelling(&w);

@@ -166,6 +166,7 @@ static figure_axis signal_axis(const trace_figure *t, const trace_panel *from)
     return y;
 }
 
+// A panel with its axis, the curves of all runs, and what is drawn with them.
 static void describe_trace_panel(const trace_figure *t, const trace_key *key, int index)
 {
     owned_figure *o = t->drawn;
@@ -241,6 +242,7 @@ static char *shading_text(const scenario *s, bool modes)
     return text_printf("%s mode", mode);
 }
 
+// Title, caption and panels; marks and shading are those of the first run.
 owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
                                   int panel_count, const trace_run *runs, int run_count)
 {
@@ -296,6 +298,7 @@ const trace_panel usual_panels[USUAL_PANELS] = {
      .weight = 0.5},
 };
 
+// The usual panels, with notes as further marks.
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
                 const figure_mark *notes, int note_count, const char *path, fault *f)
 {

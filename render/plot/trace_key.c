@@ -159,6 +159,7 @@ static void add_measured(trace_key *key, const trace_figure *from)
     }
 }
 
+// Runs first, then lines, then data.
 const trace_key *trace_key_create(const trace_figure *from)
 {
     figure *fig = &from->drawn->figure;

@@ -48,6 +48,7 @@ static int first_link_twin(int index)
     return -1;
 }
 
+// "θ1 = θ2" where the hub is part of the first link.
 char *trace_series_symbol(const scenario *s, int index)
 {
     const int twin = first_link_twin(index);
@@ -59,6 +60,7 @@ char *trace_series_symbol(const scenario *s, int index)
     return text_printf("%s = %s", symbol, other);
 }
 
+// A symbol and what it is.
 char *trace_series_label(const scenario *s, int index, bool joined)
 {
     const signal_info *signal = &signal_table[index];
@@ -76,6 +78,7 @@ char *trace_series_label(const scenario *s, int index, bool joined)
     return text_printf("%s  %s", symbol, words);
 }
 
+// A duration in the unit in which it is no long number.
 static char *duration_text(double seconds)
 {
     if (seconds < 1e-3) {
@@ -87,6 +90,7 @@ static char *duration_text(double seconds)
     return text_printf("%g\u2009s", seconds);
 }
 
+// Of the law's list, which may be shorter.
 const char *trace_mode_name(const scenario *s, int mode)
 {
     const controller *law = controller_of(s->parameters.control.law);
@@ -181,6 +185,7 @@ static void add_method(GString *out, const trace_run *run)
     }
 }
 
+// From the arm to what went wrong, in the order of these calls.
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
 {
     const trace_run *run = &runs[0];
@@ -201,6 +206,7 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
 
 // ---- of the scenario
 
+// The title and the changes, in which lines may break only between changes.
 char *scenario_title(const scenario *s)
 {
     char changes[SCENARIO_CHANGES];
@@ -217,6 +223,7 @@ char *scenario_title(const scenario *s)
     return g_string_free(out, FALSE);
 }
 
+// "scenario=NAME arm.k2=4.92 ..."
 char *parameters_line(const scenario *s)
 {
     GString *out = g_string_new(NULL);

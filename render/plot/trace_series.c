@@ -108,6 +108,7 @@ static void mark_contact(owned_figure *o, GArray *marks, const trace_run *run)
     }
 }
 
+// Of a run with a controller its modes, else contact and script.
 void trace_mark_events(owned_figure *o, const trace_run *run)
 {
     GArray *marks = g_array_new(FALSE, FALSE, sizeof(figure_mark));
@@ -123,6 +124,8 @@ void trace_mark_events(owned_figure *o, const trace_run *run)
     o->figure.marks = owned_figure_keep(o, g_array_free(marks, FALSE));
 }
 
+// Intervals from each row that is in contact, or in the mode, to the first that is
+// not.
 void trace_shade(owned_figure *o, const trace *rows, bool modes)
 {
     GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_interval));
@@ -147,6 +150,7 @@ void trace_shade(owned_figure *o, const trace *rows, bool modes)
     o->figure.intervals = owned_figure_keep(o, g_array_free(found, FALSE));
 }
 
+// One for each impact.
 figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o)
 {
     GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_impulse));
@@ -206,6 +210,7 @@ static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
     s->stride = 0;
 }
 
+// Points into the trace's own rows; only the force is copied, to add its peaks.
 figure_series trace_series(const trace_run *run, int index, owned_figure *o)
 {
     assert(index >= 0 && index < signal_count);
@@ -236,6 +241,7 @@ double trace_value(const trace *t, int index, double time, size_t side)
     return signal_value(&there, index);
 }
 
+// Row by row of the first trace.
 figure_series trace_difference(const trace *of, const trace *less, int index,
                                owned_figure *o)
 {
@@ -279,6 +285,7 @@ static int signal_of(const csv_table *table, const char *column,
     return -1;
 }
 
+// Reads the table, chooses what it holds of signals, and shifts its times.
 status overlay_read_column(trace *t, const char *path, const char *column, double shift,
                            const trace_panel *panels, int panel_count, char **name,
                            fault *f)
@@ -319,6 +326,7 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     return code;
 }
 
+// Divides "FILE.csv:COLUMN@SHIFT" into its parts.
 status overlay_read(trace *t, const char *text, const trace_panel *panels,
                     int panel_count, char **name, fault *f)
 {
