@@ -303,7 +303,7 @@ static const thesis_figure thesis_figures[] = {
      .variant = 1},
     {.id = "errors",
      .file = "table-4-errors",
-     .caption = "How near Tables 4.1 to 4.3 come out",
+     .caption = "Deviations from Tables 4.1 to 4.3",
      .model = "printed and corrected",
      .open = table_errors},
     {.id = "5.1",
@@ -341,9 +341,9 @@ static const thesis_figure thesis_figures[] = {
      .panel_count = 1,
      .modes = true,
      .note =
-         "The notch after the force's largest is friction's: it changes its sign where "
-         "the hub turns back, the controller that makes up for it follows at its next "
-         "sample, and a rigid contact feels every change of the hub's torque at once."},
+         "The notch after the largest force is due to friction, which changes its sign "
+         "where the hub turns back: the controller compensates for it one sample later, "
+         "and a rigid contact transmits every change of the hub's torque at once."},
     {.id = "5.5",
      .file = "fig-5-5",
      .caption = "Hybrid control at 1 N: command to the motor",

@@ -210,8 +210,7 @@ static const assumed_kind assumed_kinds[] = {
         .labels = {"Angular velocity <i>θ̇</i><sub>2</sub>",
                    "Angular velocity <i>θ̇</i><sub>3</sub>"},
         .approximation = "linear approximation",
-        .sentence =
-            "The predictors assume that velocities fall to zero in a straight line",
+        .sentence = "The predictors assume that velocities fall linearly to zero",
         .unit = "rad/s",
     },
     {
@@ -219,8 +218,7 @@ static const assumed_kind assumed_kinds[] = {
         .signals = {"first_angle", "last_angle"},
         .labels = {"Angle <i>θ</i><sub>2</sub>", "Angle <i>θ</i><sub>3</sub>"},
         .approximation = "quadratic approximation (4.19)",
-        .sentence =
-            "The angles that belong to velocities falling to zero in a straight line",
+        .sentence = "The angles that follow from velocities falling linearly to zero",
         .unit = "rad",
     },
 };

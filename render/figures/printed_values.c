@@ -128,8 +128,8 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
         plot,
         "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, "
         "whose constants were inferred from these tables "
-        "(docs/explanation/model.md). Residual: what the model gives beyond "
-        "what is printed, in per cent of that. %s.",
+        "(docs/explanation/model.md). Residual: the model's value less "
+        "the printed one, in per cent of that. %s.",
         picture_software());
     fig->columns = TABLES;
     fig->common_legend = true;

@@ -41,7 +41,7 @@ static void add_origin(GString *out, const report_item *item, const char *gap,
         text_append(out, "%sScenario: %s.", gap, item->scenario);
     }
     if (item->command != NULL) {
-        text_append(out, "%sAgain: <%s>%s</%s>", gap, tag, item->command, tag);
+        text_append(out, "%sCommand: <%s>%s</%s>", gap, tag, item->command, tag);
     }
 }
 
@@ -237,15 +237,15 @@ static void add_head(const report_content *r, GString *html)
         "<style>\n",
         r->heading);
     g_string_append(html, report_css);
-    text_append(html,
-                "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the "
-                "thesis's model with "
-                "its slips, <q>corrected</q> the mechanics derived anew.</p>\n"
-                "<p class=\"note\">Point at a curve for its values; Ctrl or Shift and "
-                "the wheel zoom, "
-                "dragging moves, a double click shows all again; the buttons take curves "
-                "away.</p>\n",
-                r->heading, r->preface);
+    text_append(
+        html,
+        "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the "
+        "thesis's model with its errors, <q>corrected</q> the model derived again "
+        "from mechanics.</p>\n"
+        "<p class=\"note\">Point at a curve for its values; Ctrl or Shift and "
+        "the wheel zoom, dragging moves, a double click restores the view; the "
+        "buttons hide curves.</p>\n",
+        r->heading, r->preface);
 }
 
 // A picture with many cells, which would be many thousand paths: as a PNG in the page.
@@ -489,7 +489,7 @@ static status open_recipe_item(report_item *item, const char *path, fault *f)
         }
         return code;
     }
-    item->model = "as the recipe says";
+    item->model = "as in the recipe";
     item->command = text_printf("impactlab plot %s -o FILE.pdf", path);
     return STATUS_OK;
 }
@@ -534,11 +534,11 @@ static status write_both(report_content *r, const char *folder, char *const *nam
 
 static const char preface_of_thesis[] =
     "Every figure and table of the thesis on impact and force control of a flexible "
-    "arm, drawn by the lab from its own runs. Under each stand the scenario, the model "
-    "and the one command that makes it again.";
+    "arm, drawn by the lab from its own runs. Below each are its scenario, its model and "
+    "the command that reproduces it.";
 static const char preface_of_names[] =
-    "Runs and recipes, drawn by the lab. Under each stand the scenario, the model and "
-    "the one command that makes it again.";
+    "Runs and recipes, drawn by the lab. Below each are its scenario, its model and the "
+    "command that reproduces it.";
 
 status report_write(const char *folder, char *const *names, int count,
                     run_monitor *monitor, fault *f)

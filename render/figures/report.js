@@ -1,4 +1,4 @@
-// Curves in the figures of a report: values at the pointer, zoom, and buttons that take curves away.
+// Curves in the figures of a report: values at the pointer, zoom, and buttons that hide curves.
 // Lines that are comments alone are left out of the page.
 'use strict';
 for (const fig of document.querySelectorAll('figure[data-panels]')) {

@@ -217,9 +217,9 @@ status table_algorithm(const figure_order *order, artwork *out, fault *f)
          "bodies; the next state is found.",
          "solve_step"},
         {"2.2",
-         "It would: take it back and do it again with the constraint (3.9) and the "
-         "force as a fourth unknown; then accelerations and force once more, out of "
-         "the linear system with (3.13), the constraint's second derivative.",
+         "It would: the step is repeated with the constraint (3.9) and the force as a "
+         "fourth unknown; then accelerations and force are computed once more, from the "
+         "linear system with (3.13), the constraint's second derivative.",
          "solve_step, printed_reevaluate"},
         {"3", "In contact in the step before: does the force still push?",
          "printed_motion_step"},
@@ -239,9 +239,9 @@ status table_algorithm(const figure_order *order, artwork *out, fault *f)
 
     return open_table(
         t, out,
-        "Numbered as in the thesis, told as the lab runs it for the printed "
-        "model. The corrected model locates contact and release in time "
-        "instead (docs/explanation/model.md).");
+        "Numbered as in the thesis, in the form that the lab runs for the printed "
+        "model. The corrected model locates contact and release in time instead "
+        "(docs/explanation/model.md).");
 }
 
 // ---- 4.1 to 4.3: predictions
@@ -334,15 +334,15 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
         t, out,
         "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are "
         "from what the thesis prints. The printed model has the constants inferred "
-        "from these tables (docs/explanation/model.md); the corrected one has the "
-        "mechanics derived anew and is not meant to agree. –: the arm swings away as "
-        "it touches, there is no pulse.",
+        "from these tables (docs/explanation/model.md); the corrected one is "
+        "derived again from mechanics and is not meant to agree. –: the arm swings away "
+        "as it touches, there is no pulse.",
         4.92 * computed_row(all, table, "printed", "max_force_energy")->k2_factor);
 }
 
 // ---- how near the computed tables come
 
-// How near Tables 4.1 to 4.3 come out, row by row.
+// Deviations from Tables 4.1 to 4.3, row by row.
 status table_errors(const figure_order *order, artwork *out, fault *f)
 {
     const thesis_tables *all = computed_tables(f);

@@ -17,7 +17,8 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
     assert(t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
     owned_figure *o =
-        owned_figure_create(1, "%s: what the laws make of what they were not told%s",
+        owned_figure_create(1,
+                            "%s: overshoot of control laws under uncertain parameters%s",
                             t->scenario, changes);
 
     // a curve for each law: of the same runs, run i of n, in the order of their
@@ -73,12 +74,12 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes)
         least[i] = least_so_far;
     }
     owned_figure_add(o, 0,
-                     (figure_series){"value", "an evaluation", number, value, t->done,
+                     (figure_series){"value", "evaluation", number, value, t->done,
                                      .no_line = true, .marker = MARKER_CIRCLE,
                                      .radius = marker_radius(t->done),
                                      .colour = palette_slot(0)});
     owned_figure_add(o, 0,
-                     (figure_series){"least", "the least so far", number, least, t->done,
+                     (figure_series){"least", "least so far", number, least, t->done,
                                      .colour = palette_slot(1)});
 
     // the page
@@ -87,14 +88,16 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes)
     o->panels[0].y = (figure_axis){.name = "value", .label = minimised, .room = 0.05};
     o->figure.x =
         (figure_axis){.name = "evaluation", .label = "Evaluation", .room = 0.02};
-    o->figure.caption = owned_figure_printf(o,
-                                            "%zu evaluations of %zu runs. What fails, or "
-                                            "is not allowed, has no point. impactlab %s.",
-                                            t->done, t->each, lab_version());
+    o->figure.caption =
+        owned_figure_printf(o,
+                            "%zu evaluations of %zu runs. Evaluations that "
+                            "failed or broke a constraint have no point. "
+                            "impactlab %s.",
+                            t->done, t->each, lab_version());
     return o;
 }
 
-// ==== identify: what the fit leaves of the readings
+// ==== identify: residuals of the fit
 
 // A channel's residuals in the panel of its trace, a dot for each reading that counts.
 // Returns the first residual of the next channel.
@@ -126,8 +129,8 @@ owned_figure *identify_figure_create(const identification *id)
     assert(id->trace_count > 0 && id->trace_count <= FIGURE_PANELS);
     char changes[SCENARIO_CHANGES];
     owned_figure *o =
-        owned_figure_create(id->trace_count, "%s: what the fit leaves of the readings%s",
-                            id->base->name, scenario_changes(id->base, changes));
+        owned_figure_create(id->trace_count, "%s: residuals of the fit%s", id->base->name,
+                            scenario_changes(id->base, changes));
 
     // a panel for each trace; residuals stand trace by trace, channel by channel
     const double *residual = id->residual;
@@ -235,7 +238,7 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
     return o;
 }
 
-// The loop gain in the plane, as far as it is near the origin.
+// The loop gain in the complex plane, as far as it is near the origin.
 static void add_loop_gain(owned_figure *o, const linear_response *loop)
 {
     const size_t count = (size_t)loop->count;
@@ -269,8 +272,8 @@ owned_figure *nyquist_figure_create(const scenario *s, const linear_response *lo
 {
     static const double critical[] = {-1, 0};
     char changes[SCENARIO_CHANGES];
-    owned_figure *o = owned_figure_create(1, "%s: loop gain in the plane%s", s->name,
-                                          scenario_changes(s, changes));
+    owned_figure *o = owned_figure_create(1, "%s: loop gain in the complex plane%s",
+                                          s->name, scenario_changes(s, changes));
 
     // the loop gain, and the point that it keeps away from
     add_loop_gain(o, loop);

@@ -66,14 +66,14 @@ figure_axis described_axis(owned_figure *o, const char *name, const char *descri
 figure_map *figure_grid(owned_figure *o, const double *x, const double *y,
                         const double *z, size_t count);
 
-// --- identify: what the fit leaves of the readings
+// --- identify: residuals of the fit
 
 // Describes the picture: a panel for each trace, the residuals of every channel over time
 // in standard deviations. At most FIGURE_PANELS traces. To be freed with
 // owned_figure_destroy.
 owned_figure *identify_figure_create(const identification *id);
 
-// --- linear: answers over frequency, and a loop gain in the plane
+// --- linear: answers over frequency, and a loop gain in the complex plane
 
 typedef struct linear_curve {
     const char *name;
