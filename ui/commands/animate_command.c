@@ -175,6 +175,7 @@ static int check_film_request(const arguments *a)
     return EXIT_DONE;
 }
 
+// The command: opens and runs all scenarios of the film, and films them.
 static int animate(const arguments *a)
 {
     int ended = check_film_request(a);

@@ -22,6 +22,7 @@ static search_entry section_entry(const void *context, int i)
     return (search_entry){s.heading, s.title, s.texts, s.text_count};
 }
 
+// A parameter with its description, and its words if it is a choice.
 static search_entry parameter_entry(const void *context, int i)
 {
     (void)context;
@@ -145,6 +146,7 @@ static bool print_passage(FILE *stream, const char *text)
     return text[length] == '\0';
 }
 
+// A hit: its name, the passage that fits, and how to go on from there.
 static void print_answer(FILE *stream, const search_source *sources,
                          const search_hit *hit)
 {

@@ -21,6 +21,7 @@
 
 // --- values ----------------------------------------------------------------------------
 
+// Reads a number within the range of its row. Returns the exit status.
 static int read_option_number(const option_row *o, const char *text, double *value)
 {
     const char *rest;
@@ -68,6 +69,7 @@ static int read_length(const option_row *o, const char *text, double *value)
         o->name, text, o->low, o->high);
 }
 
+// Reads a whole number within the range of its row. Returns the exit status.
 static int read_whole(const option_row *o, const char *text, uint64_t *value)
 {
     // 2^64 and what lies beyond stand for the largest number there is
@@ -90,6 +92,7 @@ static int read_whole(const option_row *o, const char *text, uint64_t *value)
     return EXIT_DONE;
 }
 
+// Reads WIDTHxHEIGHT, each at least 1. Returns the exit status.
 static int read_size(const option_row *o, const char *text, grid_size *size)
 {
     char *rest = NULL;
@@ -129,6 +132,7 @@ static int check_choice(const option_row *o, const char *text)
     return complain_choice(o, text);
 }
 
+// Checks that a text is the key of a summary's quantity. Returns the exit status.
 static int check_quantity(const option_row *o, const char *key)
 {
     if (summary_find(key) >= 0) {
@@ -464,6 +468,8 @@ static int claim_results(const arguments *a)
     return EXIT_DONE;
 }
 
+// Checks the number of operands, and all places and files that are named. Returns the
+// exit status.
 static int check_operands(const arguments *a)
 {
     const command *self = a->command;

@@ -72,6 +72,7 @@ static int check_file(const char *file, const arguments *a, json_t *files)
     return result;
 }
 
+// The command: checks each file, or scenario of that name.
 static int check_files(const arguments *a)
 {
     json_t *files = json_array();

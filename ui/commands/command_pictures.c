@@ -101,6 +101,7 @@ int read_picture_options(const arguments *a, figure_options *o)
 
 // --- figures ---------------------------------------------------------------------------
 
+// Draws a figure to --plot according to the options. Returns the exit status.
 static int publish_figure(const arguments *a, const figure *fig)
 {
     figure_options o;

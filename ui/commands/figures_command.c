@@ -186,6 +186,7 @@ static status write_environments(const figure_list *list, const char *path, faul
     return whole_file_commit(&out, f);
 }
 
+// Draws all figures of the list, and writes their environments.
 static status draw_figures(figure_list *list, const arguments *a, fault *f)
 {
     const pool_work work = {.context = list,
@@ -204,6 +205,7 @@ static status draw_figures(figure_list *list, const arguments *a, fault *f)
 
 // --- the command -----------------------------------------------------------------------
 
+// The figures that were drawn, and where they are.
 static json_t *figures_json(const figure_list *list)
 {
     json_t *array = json_array();
@@ -236,6 +238,7 @@ static int report_figures(const figure_list *list, const arguments *a)
     return result;
 }
 
+// The command: draws the figures that are named, else all.
 static int draw_thesis_figures(const arguments *a)
 {
     SCOPED(figure_list_finish)

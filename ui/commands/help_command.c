@@ -75,6 +75,7 @@ static int answer_question(const arguments *a)
                     "parameter, a quantity or a command has");
 }
 
+// The command: writes what is asked for, by default the list of commands.
 static int help(const arguments *a)
 {
     // a command that is named, or a question

@@ -9,6 +9,7 @@
 
 enum { LINE_WIDTH = 100 };
 
+// Paragraphs with an empty line between them; literal lines stand close together.
 static void print_paragraphs(FILE *stream, const char *text)
 {
     paragraph p;
@@ -38,6 +39,7 @@ static int option_width(const option_row *o)
     return (int)width;
 }
 
+// The width of the column of options.
 static int widest_option(const command *c)
 {
     const option_row *o;
@@ -85,6 +87,7 @@ void print_help(FILE *stream, const command *c)
     }
 }
 
+// The commands of a group, a line each.
 static void print_group(FILE *stream, const command_list *all, int group,
                         const char *title)
 {
@@ -262,6 +265,7 @@ static void write_program_page(FILE *stream, const command_list *all)
             ".SH SEE ALSO\n\\fBimpactlab\\-scenario\\fR(5), \\fBlibimpactlab\\fR(3)\n");
 }
 
+// An option as a term of a list.
 static void write_option(FILE *stream, const option_row *o)
 {
     g_autofree char *name = troff_text(o->name);
@@ -278,6 +282,7 @@ static void write_option(FILE *stream, const option_row *o)
     fprintf(stream, "\\fR\n%s\n", help);
 }
 
+// The page of a command, impactlab-COMMAND(1).
 static void write_command_page(FILE *stream, const command *c)
 {
     g_autofree char *summary = troff_text(c->summary);

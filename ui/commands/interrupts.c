@@ -22,6 +22,8 @@ static struct sigaction before[SIGNALS]; // what they did
 static bool catching;
 static volatile double caught_at; // [s]
 
+// The first signal stops the work and sets the alarm, after which runs in hand are given
+// up; a later one ends the program.
 static void catch_signal(int number)
 {
     const double now = clock_seconds(CLOCK_MONOTONIC);
@@ -59,6 +61,7 @@ void interrupts_catch(void)
 
 int interrupts_end(int result)
 {
+    // the program ends by the signal, so that whoever called it sees it
     if (interrupted != 0) {
         fflush(stdout);
         if (result == 0) {

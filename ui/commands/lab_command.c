@@ -232,6 +232,7 @@ static void follow_time(live_lab *lab, double now)
     lab->advanced_to = now;
 }
 
+// Hands one input to the lab.
 static void take_input(live_lab *lab, terminal_input in)
 {
     switch (in.kind) {

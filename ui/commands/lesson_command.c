@@ -83,6 +83,7 @@ static int open_lesson(const arguments *a, const char *wanted)
     return scenario_listing_close(&l, a, result);
 }
 
+// The command: opens the lesson that is named, else lists all.
 static int list_or_open_lesson(const arguments *a)
 {
     if (a->operand_count == 0) {

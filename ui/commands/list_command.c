@@ -46,6 +46,7 @@ static int list_scenario(scenario_listing *l, const char *name, int width)
     return EXIT_DONE;
 }
 
+// The command: all scenarios, whose titles stand in one column.
 static int list_scenarios(const arguments *a)
 {
     scenario_listing l;

@@ -58,6 +58,7 @@ static int draw_recipe(const char *recipe, const figure_options *o, const char *
     return EXIT_DONE;
 }
 
+// The command: checks what is asked for, and draws the figure of the recipe.
 static int plot_recipe(const arguments *a)
 {
     const char *recipe = a->operands[0];

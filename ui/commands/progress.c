@@ -73,6 +73,7 @@ static void start_notes(void)
     pthread_sigmask(SIG_SETMASK, &mask, NULL);
 }
 
+// Begins the work that is described in `work`.
 static void begin_work(const arguments *a)
 {
     interrupts_monitor = (run_monitor){.stop = false};

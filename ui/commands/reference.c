@@ -116,6 +116,7 @@ static char *group_that_begins(int index)
 
 // --- chapters in Markdown --------------------------------------------------------------
 
+// A table for each group of parameters.
 static void write_parameters_chapter(FILE *stream)
 {
     fprintf(stream, "# Parameters\n\nEvery parameter of a scenario, by its path. A "
@@ -141,6 +142,7 @@ static void write_parameters_chapter(FILE *stream)
     }
 }
 
+// The table of signals.
 static void write_signals_chapter(FILE *stream)
 {
     fprintf(stream, "# Signals\n\nWhat a run records at every row: columns of `--csv`, "
@@ -155,6 +157,7 @@ static void write_signals_chapter(FILE *stream)
     }
 }
 
+// The table of the numbers of a run.
 static void write_quantities_chapter(FILE *stream)
 {
     fprintf(stream,
@@ -205,6 +208,7 @@ static void write_own_number(FILE *stream, const controller_parameter *number)
             number->initial, unit, number->minimum, number->maximum, description);
 }
 
+// What a law reads: parameters of the scenario and numbers of its own.
 static void write_law_numbers(FILE *stream, const controller *law)
 {
     for (int i = 0; i < law->parameter_count; i++) {
@@ -233,6 +237,7 @@ static void write_law_comparison(FILE *stream)
     }
 }
 
+// The laws side by side, then a section for each.
 static void write_laws_chapter(FILE *stream)
 {
     fprintf(stream, "# Control laws and their parameters\n\nThe choices of "
@@ -251,6 +256,7 @@ static void write_laws_chapter(FILE *stream)
 
 // --- the man page of scenario files ----------------------------------------------------
 
+// A parameter with its unit, meaning, default and range.
 static void write_man_parameter(FILE *stream, int index)
 {
     const parameter_info *info = &parameter_table[index];
@@ -269,6 +275,7 @@ static void write_man_parameter(FILE *stream, int index)
             remark_if(info->timed, "; may change during a run"));
 }
 
+// The page impactlab-scenario(5).
 static void write_scenario_page(FILE *stream)
 {
     fprintf(stream,

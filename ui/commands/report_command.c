@@ -4,6 +4,7 @@
 #include "render/figures/figures.h"
 #include "ui/commands/progress.h"
 
+// The command: writes the report of what is named, else of the whole thesis.
 static int write_report(const arguments *a)
 {
     const char *folder = "report";

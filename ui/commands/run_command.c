@@ -69,6 +69,8 @@ static const char *remark_on(const parameters *p, int index)
     return "";
 }
 
+// The numbers of the run; those that only some runs have are left out where they are
+// missing.
 static void print_quantities(const parameters *p, const summary *m)
 {
     for (int i = 0; i < summary_count; i++) {
@@ -101,6 +103,7 @@ static void print_change(const scenario *s, const event *e)
     say("   %s = %s", action_path(a, path), value);
 }
 
+// One event with its instant.
 static void print_event(const scenario *s, const event *e)
 {
     printf("  %10.6f s  %s", e->time, event_name(e->kind));
@@ -122,6 +125,7 @@ static void print_event(const scenario *s, const event *e)
     printf("\n");
 }
 
+// The first events of a run.
 static void print_events(const scenario *s, const trace *t)
 {
     size_t shown = t->event_count;
@@ -151,6 +155,7 @@ static const char *expectation_mark(bool is_met)
     return is_met ? "ok " : "NOT MET";
 }
 
+// What was expected of a quantity, and what it came to.
 static void print_expectation(const expectation *e, double value)
 {
     const summary_info *quantity = &summary_table[e->quantity];
@@ -166,6 +171,7 @@ static void print_expectation(const expectation *e, double value)
            quantity->label, found, wanted);
 }
 
+// What the scenario expects, each met or not.
 static void print_expectations(const scenario *s, const summary *m)
 {
     if (s->expectation_count == 0) {
@@ -178,6 +184,7 @@ static void print_expectations(const scenario *s, const summary *m)
     }
 }
 
+// A run as text: its setup, numbers, events and expectations.
 static void print_run(const void *found)
 {
     const finished_run *run = found;
@@ -218,6 +225,7 @@ static int plot_signals(const arguments *a, const void *found)
     return publish_runs(a, NULL, &shown, 1);
 }
 
+// Writes the picture of the arm, and what else is asked for. Returns the exit status.
 static int write_run_results(const arguments *a, const finished_run *run, bool whole)
 {
     static const command_results results = {.json = run_json,
@@ -288,6 +296,8 @@ static void print_notes(const scenario *s)
     }
 }
 
+// Runs a scenario, writes its results and says what is to be said of it. Returns the exit
+// status.
 static int run_and_report(const arguments *a, scenario *s)
 {
     // what the file expects is said of its own parameters, not of changed ones

@@ -120,6 +120,7 @@ static char *quoted_text(const char *text, const char *special)
 
 // --- bash ------------------------------------------------------------------------------
 
+// The call that offers the values of an option.
 static void write_bash_offer(FILE *stream, const option_row *o)
 {
     switch (offers[o->type]) {
@@ -182,6 +183,7 @@ static void write_bash_command(FILE *stream, const command_list *all, const comm
             options, operands, scenarios);
 }
 
+// A function with one case over all commands.
 static void write_bash(FILE *stream, const command_list *all)
 {
     g_autofree char *commands = command_words(all);
@@ -235,6 +237,7 @@ static void write_bash(FILE *stream, const command_list *all)
 // Characters that mean something to _arguments and _describe.
 static const char zsh_special[] = "[]:\\";
 
+// The action of _arguments that offers the values of an option.
 static void write_zsh_offer(FILE *stream, const option_row *o)
 {
     switch (offers[o->type]) {
@@ -279,6 +282,7 @@ static void write_zsh_spelling(FILE *stream, const option_row *o, const char *sp
     fprintf(stream, "'");
 }
 
+// An option for _arguments, in its short form and its long one.
 static void write_zsh_option(FILE *stream, const option_row *o)
 {
     if (o->letter != 0) {
@@ -294,6 +298,7 @@ static void write_zsh_option(FILE *stream, const option_row *o)
     write_zsh_spelling(stream, o, name, equals);
 }
 
+// The branch of a command: one call of _arguments.
 static void write_zsh_command(FILE *stream, const command_list *all, const command *c)
 {
     fprintf(stream, "        %s)\n            _arguments", c->name);
@@ -317,6 +322,7 @@ static void write_zsh_command(FILE *stream, const command_list *all, const comma
     fprintf(stream, " ;;\n");
 }
 
+// A function with the list of commands, and one case over all of them.
 static void write_zsh(FILE *stream, const command_list *all)
 {
     g_autofree char *paths = parameter_words();
@@ -373,6 +379,7 @@ static void write_zsh(FILE *stream, const command_list *all)
 // The beginning of a line that holds behind a command's name.
 #define FISH_OF_COMMAND "complete -c impactlab -n '__fish_seen_subcommand_from %s'"
 
+// The switches of complete that offer the values of an option.
 static void write_fish_offer(FILE *stream, const option_row *o)
 {
     switch (offers[o->type]) {
@@ -403,6 +410,7 @@ static void write_fish_offer(FILE *stream, const option_row *o)
     }
 }
 
+// An option of a command, a line.
 static void write_fish_option(FILE *stream, const command *c, const option_row *o)
 {
     fprintf(stream, FISH_OF_COMMAND " -l %s", c->name, o->name);
@@ -416,6 +424,7 @@ static void write_fish_option(FILE *stream, const command *c, const option_row *
     fprintf(stream, " -d '%s'\n", help);
 }
 
+// A command, what its operands may be, and its options.
 static void write_fish_command(FILE *stream, const command_list *all, const command *c)
 {
     g_autofree char *described = quoted_text(c->summary, "");
@@ -438,6 +447,7 @@ static void write_fish_command(FILE *stream, const command_list *all, const comm
     }
 }
 
+// A line for each command and each option.
 static void write_fish(FILE *stream, const command_list *all)
 {
     fprintf(stream, "# fish completion for impactlab\n"

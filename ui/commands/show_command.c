@@ -71,6 +71,7 @@ static void print_given_settings(const scenario *s)
     }
 }
 
+// The numbers of the control law, below the text of control.settings.
 static void print_settings(const scenario *s)
 {
     const controller *law = controller_of(s->parameters.control.law);
@@ -85,6 +86,7 @@ static void print_settings(const scenario *s)
 
 // --- the scenario ----------------------------------------------------------------------
 
+// The table of all parameters, with those of control.settings where that stands.
 static void print_parameters(const scenario *s)
 {
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n",
@@ -104,6 +106,7 @@ static void print_parameters(const scenario *s)
     }
 }
 
+// What happens at which instant.
 static void print_script(const scenario *s)
 {
     printf("\nScript:\n");
@@ -119,6 +122,7 @@ static void print_script(const scenario *s)
     }
 }
 
+// The quantities that a run of the scenario is checked for.
 static void print_expected_values(const scenario *s)
 {
     printf("\nExpected:\n");
@@ -148,6 +152,7 @@ static json_t *scenario_json(const scenario *s)
                    export_parameters(&s->parameters), given);
 }
 
+// Shows a scenario that is open, as text or as JSON. Returns the exit status.
 static int show_scenario(const arguments *a, scenario *s)
 {
     if (a->json != NULL) {
@@ -169,6 +174,7 @@ static int show_scenario(const arguments *a, scenario *s)
     return EXIT_DONE;
 }
 
+// The command: shows a scenario or, where there is none of that name, what has the name.
 static int show_or_explain(const arguments *a)
 {
     const int result = with_scenario(a->operands[0], a, show_scenario);

@@ -93,7 +93,7 @@ static void propose_name(const explorer_model *model, explorer_input *input,
                          const char *command, const char *ending)
 {
     const session *s = &model->session;
-    char stem[LINE_TEXT / 2] = "", name[LINE_TEXT / 2];
+    char stem[100] = "", name[LINE_TEXT / 2];
     text_add(stem, 59, "%s", scenario_leaf(s->base.name));
 
     // what the last change changed

@@ -93,6 +93,7 @@ static json_t *benchmarks_json(const void *found)
     return bench_export(found);
 }
 
+// The command: measures what is asked for, and writes the times.
 static int measure_and_report(const arguments *a)
 {
     bool any = false;

@@ -85,6 +85,7 @@ static bool print_point(const calibration_point *p)
     return drifts;
 }
 
+// The table of all presses, and how to use it.
 static void print_presses(const void *found)
 {
     const calibrated *done = found;
@@ -140,6 +141,7 @@ static status make_table(calibrated *done, fault *f)
                               PARAMETER_INDEX(control.k2_table), done->table, f);
 }
 
+// The command: presses with each command and makes the table of stiffness.
 static int press_and_report(const arguments *a, scenario *s)
 {
     g_autofree char *range = choose_range(a, s);

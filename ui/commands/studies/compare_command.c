@@ -236,6 +236,7 @@ static void write_comparison_markdown(FILE *stream, const void *found)
     compare_text(stream, &c->table, true);
 }
 
+// The table, with a note on what its marks mean.
 static void print_comparison(const void *found)
 {
     const comparison *c = found;
@@ -308,6 +309,7 @@ static int plot_comparison(const arguments *a, const void *found)
 
 // --- the command -----------------------------------------------------------------------
 
+// The command: runs all scenarios and writes them side by side.
 static int compare_and_report(const arguments *a)
 {
     SCOPED(comparison_finish)

@@ -20,6 +20,7 @@ typedef struct three_steps {
 
 // --- numbers ---------------------------------------------------------------------------
 
+// The numbers at the three steps, with their orders.
 static json_t *convergence_json(const void *found)
 {
     const three_steps *steps = found;
@@ -58,6 +59,7 @@ static bool agrees(const convergence_row *row)
     return spread <= 1e-9 * fabs(v[2]);
 }
 
+// A number at the three steps, with its order where it can be told.
 static void print_convergence_row(const convergence_row *row)
 {
     const summary_info *quantity = &summary_table[summary_index(row->key)];
@@ -75,6 +77,7 @@ static void print_convergence_row(const convergence_row *row)
     }
 }
 
+// The table of all numbers.
 static void print_convergence(const void *found)
 {
     const three_steps *steps = found;
@@ -153,6 +156,7 @@ static int plot_convergence(const arguments *a, const void *found)
 
 // --- the command -----------------------------------------------------------------------
 
+// The command: runs the scenario at three steps and compares them.
 static int halve_steps_and_report(const arguments *a, scenario *s)
 {
     static const command_results results = {.json = convergence_json,

@@ -37,6 +37,7 @@ static const double *number_of_point(const follow_point *p, follow_number number
 
 // --- numbers ---------------------------------------------------------------------------
 
+// The points of one law.
 static json_t *frequencies_json(const follow_point *points)
 {
     json_t *array = json_array();
@@ -49,6 +50,7 @@ static json_t *frequencies_json(const follow_point *points)
     return array;
 }
 
+// The points of all laws.
 static json_t *follow_json(const void *found)
 {
     const follow_result *result = found;
@@ -77,6 +79,7 @@ static void print_number(const follow_study *study, follow_number number,
     printf("\n");
 }
 
+// A table for each number.
 static void print_follow(const void *found)
 {
     const follow_result *result = found;
@@ -151,6 +154,7 @@ static int plot_follow(const arguments *a, const void *found)
 
 // --- the study -------------------------------------------------------------------------
 
+// Makes the study and writes what is asked for. Returns the exit status.
 static int study_following(const arguments *a, scenario *s)
 {
     static const command_results results = {.json = follow_json,

@@ -118,7 +118,6 @@ static status compare_links(const arguments *a, fit_outcome *o, fault *f)
     const int asked = c->count;
     c->count = 0; // of those that are done
     for (int i = 0; i < asked; i++) {
-
         // the fitted arm with this number of links
         scenario other;
         const parameter_change change = {PARAMETER_INDEX(arm.links), c->links[i]};
@@ -155,6 +154,7 @@ static status fit_and_judge(const arguments *a, fit_outcome *o, fault *f)
 
 // --- results ---------------------------------------------------------------------------
 
+// The fit, what compares it, and its validation.
 static json_t *fit_json(const void *found)
 {
     const fit_outcome *o = found;
@@ -168,6 +168,7 @@ static json_t *fit_json(const void *found)
                         identify_traces_json(&o->validation));
 }
 
+// A parameter with its error and interval, as far as these are known.
 static void print_fitted_parameter(const fitted_parameter *fit, bool is_judged)
 {
     const char *name = fit->axis.name;
@@ -245,6 +246,7 @@ static void print_judgement(const fit_outcome *o)
     }
 }
 
+// The fitted parameters, and how far to trust them.
 static void print_fit(const void *found)
 {
     const fit_outcome *o = found;
@@ -334,6 +336,7 @@ static int report_stopped_fit(const arguments *a, const fit_outcome *o)
     return result;
 }
 
+// The command: fits the parameters to the traces, and judges the fit.
 static int fit_and_report(const arguments *a, scenario *s)
 {
     if (a->data.count == 0 || a->fits.count == 0) {

@@ -11,6 +11,7 @@
 #include "ui/commands/studies/loop_analysis.h"
 #include "ui/commands/studies/loop_survey.h"
 
+// The place of rest that a word of --at names.
 static linear_place read_place(const char *word)
 {
     if (strcmp(word, "free") == 0) {
@@ -60,6 +61,7 @@ static int check_linear_options(const arguments *a, const scenario *s, linear_pl
     return EXIT_DONE;
 }
 
+// The command: looks at one loop or, with --vary, at many.
 static int linearise_and_report(const arguments *a, scenario *s)
 {
     const char *word = "contact";

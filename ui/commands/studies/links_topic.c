@@ -41,6 +41,7 @@ static json_t *tendency_json(const links_row *row)
                    row->off, enough);
 }
 
+// The quantities by number of links, and what they tend to.
 static json_t *links_json(const void *found)
 {
     const links_result *result = found;
@@ -55,6 +56,7 @@ static json_t *links_json(const void *found)
     return json_of("scenario:t links:o limits:o", result->scenario->name, links, limits);
 }
 
+// The heading of the table: the numbers of links, and what else stands there.
 static void print_links_heading(const links_result *result)
 {
     char changes[SCENARIO_CHANGES];
@@ -66,6 +68,7 @@ static void print_links_heading(const links_result *result)
     printf(" %10s %9s %9s %6s\n", "limit", "+-", "beam", "order");
 }
 
+// A quantity by number of links, and what it tends to.
 static void print_links_row(const links_row *row, int count)
 {
     char name[64];
@@ -104,6 +107,7 @@ static void print_tendency(const links_row *row)
     }
 }
 
+// The table, and what it says in words.
 static void print_links(const void *found)
 {
     const links_result *result = found;
@@ -197,6 +201,7 @@ static int plot_links(const arguments *a, const void *found)
 
 // --- the study -------------------------------------------------------------------------
 
+// Makes the study and writes what is asked for. Returns the exit status.
 static int study_links(const arguments *a, scenario *s)
 {
     static const command_results results = {.json = links_json,

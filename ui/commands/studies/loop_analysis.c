@@ -239,6 +239,7 @@ static json_t *margins_json(const analysis *x)
                    m->gain_down_db, m->phase_deg, m->delay_s, m->disk);
 }
 
+// Gain and phase over frequency.
 static json_t *response_json(const linear_response *r)
 {
     json_t *points = json_array();
@@ -251,6 +252,7 @@ static json_t *response_json(const linear_response *r)
     return points;
 }
 
+// Everything: poles and zeros, the loop, and the matrices.
 static json_t *analysis_json(const void *found)
 {
     const analysis *x = found;
@@ -282,6 +284,7 @@ static json_t *analysis_json(const void *found)
     return object;
 }
 
+// A row for each pole and zero.
 static void write_roots_csv(FILE *stream, const void *found)
 {
     static const result_column columns[] = {{NULL, "kind", ""},
@@ -308,6 +311,7 @@ static void write_roots_csv(FILE *stream, const void *found)
     }
 }
 
+// The matrices, poles and zeros for MATLAB or Octave.
 static void write_mat(FILE *stream, const void *found)
 {
     const analysis *x = found;
@@ -344,6 +348,7 @@ static void print_margin(const char *name, double value, const char *unit)
     }
 }
 
+// How far the loop is from instability.
 static void print_margins(const analysis *x)
 {
     const linear_margins *m = &x->margins;
@@ -385,6 +390,7 @@ static void print_root(double complex root)
     printf("\n");
 }
 
+// The table of poles, or of the zeros to an output.
 static void print_roots(const analysis *x, int set)
 {
     const root_set *roots = &x->sets[set];
@@ -399,6 +405,7 @@ static void print_roots(const analysis *x, int set)
     }
 }
 
+// The analysis as text.
 static void print_analysis(const void *found)
 {
     const analysis *x = found;

@@ -44,6 +44,7 @@ static json_t *combination_json(const linear_survey *y, size_t i)
                    linear_is_stable(false, growth), y->numbers[BY_RUNS][i]);
 }
 
+// All combinations with their judgements, and where stability changes.
 static json_t *survey_json(const void *found)
 {
     const stability_survey *survey = found;
@@ -61,6 +62,7 @@ static json_t *survey_json(const void *found)
                    survey->place_name, combinations, limits);
 }
 
+// A row for each combination, with its judgements.
 static void write_survey_csv(FILE *stream, const void *found)
 {
     const linear_survey *y = &((const stability_survey *)found)->found;
@@ -90,6 +92,7 @@ static void write_survey_csv(FILE *stream, const void *found)
 
 // --- text and picture ------------------------------------------------------------------
 
+// How many combinations are stable by one of the judgements.
 static size_t count_stable(const linear_survey *y, int judgement)
 {
     size_t count = 0;
@@ -101,6 +104,7 @@ static size_t count_stable(const linear_survey *y, int judgement)
     return count;
 }
 
+// How many loops are stable, and up to where.
 static void print_survey(const void *found)
 {
     const stability_survey *survey = found;

@@ -5,6 +5,7 @@
 #include "src/study/store/sweep_store.h"
 #include "ui/commands/results.h"
 
+// The command: joins the parts and says how many runs there are.
 static int merge_parts(const arguments *a)
 {
     sweep_merged merged;

@@ -38,6 +38,7 @@ static json_t *study_point_json(const char *method, const study_point *p)
                    p->cost, errors);
 }
 
+// All points with their errors, and the reference.
 static json_t *methods_json(const void *found)
 {
     const methods_result *result = found;
@@ -52,6 +53,7 @@ static json_t *methods_json(const void *found)
                    reference_json(study), points);
 }
 
+// The table of one method: cost and errors by step.
 static void print_method(const method_study *study, int method)
 {
     printf("\n%-18s %10s %12s %12s %12s\n", study_methods[method], "cost", "contact",
@@ -91,6 +93,7 @@ static void print_least_costs(const method_study *study)
     }
 }
 
+// The reference, the tables of all methods, and what follows from them.
 static void print_methods(const void *found)
 {
     const methods_result *result = found;
@@ -188,6 +191,7 @@ static int plot_methods(const arguments *a, const void *found)
 
 // --- the study -------------------------------------------------------------------------
 
+// Makes the study and writes what is asked for. Returns the exit status.
 static int study_methods_of_integration(const arguments *a, scenario *s)
 {
     // where no run was done there is no reference either

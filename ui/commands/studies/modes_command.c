@@ -49,6 +49,7 @@ static void arm_modes_finish(arm_modes *m)
 
 // --- numbers ---------------------------------------------------------------------------
 
+// Frequencies and shapes for each way of holding the arm.
 static json_t *modes_json(const void *found)
 {
     const arm_modes *m = found;
@@ -70,6 +71,7 @@ static json_t *modes_json(const void *found)
     return json_of("scenario:t modes:o", m->scenario->name, array);
 }
 
+// The line of a mode: its frequency, and the first angles of its shape.
 static void print_mode(const arm *a, const mode_set *set, int mode)
 {
     const double frequency = set->frequencies[mode];
@@ -87,6 +89,7 @@ static void print_mode(const arm *a, const mode_set *set, int mode)
     printf("\n");
 }
 
+// The table of the first modes of a set.
 static void print_set(const arm *a, const mode_set *set)
 {
     if (set->count == 0) {
@@ -102,6 +105,7 @@ static void print_set(const arm *a, const mode_set *set)
     }
 }
 
+// A table for each way of holding the arm.
 static void print_modes(const void *found)
 {
     const arm_modes *m = found;
@@ -185,6 +189,7 @@ static figure_panel modes_panel_of(modes_panel *p, const arm *a, const mode_set 
     return panel;
 }
 
+// The shapes of the first modes, a panel for each way of holding the arm.
 static int plot_modes(const arguments *args, const void *found)
 {
     const arm_modes *m = found;
@@ -214,6 +219,7 @@ static int plot_modes(const arguments *args, const void *found)
 
 // --- the command -----------------------------------------------------------------------
 
+// Computes the modes for each way of holding the arm.
 static status compute_modes(arm_modes *m)
 {
     arm_init(&m->arm, &m->scenario->parameters);
@@ -228,6 +234,7 @@ static status compute_modes(arm_modes *m)
     return STATUS_OK;
 }
 
+// The command: computes the modes and writes them.
 static int compute_and_report_modes(const arguments *args, scenario *s)
 {
     // errata B1: no natural frequencies without a symmetric stiffness

@@ -65,6 +65,7 @@ typedef struct predicted_contact {
 
 // --- numbers ---------------------------------------------------------------------------
 
+// What one predictor says.
 static json_t *answer_json(const prediction_answer *answer)
 {
     const prediction *p = &answer->prediction;
@@ -86,6 +87,7 @@ static json_t *answer_json(const prediction_answer *answer)
                    p->restitution, p->inductance);
 }
 
+// What all predictors say, beside the simulation.
 static json_t *predictions_json(const void *found)
 {
     const predicted_contact *p = found;
@@ -132,6 +134,7 @@ static void print_pulse(const char *label, double force, double delay, double im
     printf("\n");
 }
 
+// The line of a predictor, or why it has no answer.
 static void print_prediction(const prediction_answer *answer)
 {
     const prediction *p = &answer->prediction;
@@ -161,6 +164,7 @@ static void print_inductance(const scenario *s, const prediction *linearised)
         ";\n  only the linearised arm follows it, to the others it follows at once.\n");
 }
 
+// The contact, what all predictors say of it, and the simulation.
 static void print_predictions(const void *found)
 {
     const predicted_contact *p = found;
@@ -287,6 +291,7 @@ static int predict_and_report(const arguments *a, const scenario *s,
     return write_results(a, &results, &p, true);
 }
 
+// The command: runs the scenario, and asks the predictors about its contact.
 static int run_and_predict(const arguments *a, scenario *s)
 {
     run_result simulated;

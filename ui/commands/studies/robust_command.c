@@ -530,6 +530,8 @@ static bool any_succeeded(const robustness *r)
     return false;
 }
 
+// Writes the table of what was judged; nothing to judge is a failure. Returns the exit
+// status.
 static int report_robustness(const robustness *r, bool whole)
 {
     static const command_results results = {.json = robustness_json,
@@ -545,6 +547,7 @@ static int report_robustness(const robustness *r, bool whole)
     return result;
 }
 
+// The command: runs all laws in all cases, and judges them.
 static int judge_and_report(const arguments *a, scenario *s)
 {
     SCOPED(robustness_finish) robustness r = {.arguments = a, .scenario = s};

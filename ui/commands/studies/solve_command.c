@@ -20,6 +20,7 @@ typedef struct question {
     solution found;
 } question;
 
+// One limit; after an interrupt also the nearest value beyond it.
 static json_t *limit_json(const question *q, const solve_limit *limit)
 {
     const char *holds = limit->holds_below ? "below" : "above";
@@ -74,6 +75,7 @@ static void print_question(const question *q)
         q->axis.name, low, high_text, q->found.done);
 }
 
+// One limit in words.
 static void print_limit(const question *q, const solve_limit *limit)
 {
     const summary_info *quantity = &summary_table[q->condition.quantity];
@@ -113,6 +115,7 @@ static void print_unknown(const question *q)
     }
 }
 
+// The question and its answer.
 static void print_solution(const void *found)
 {
     const question *q = found;
@@ -142,6 +145,7 @@ static status read_and_solve(const arguments *a, question *q, run_monitor *monit
                  monitor, &q->found, f);
 }
 
+// The command: finds the limits and writes them.
 static int solve_and_report(const arguments *a, scenario *s)
 {
     static const command_results results = {.json = solution_json,

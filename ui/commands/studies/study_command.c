@@ -28,6 +28,8 @@ static const study_topic *find_topic(const char *name)
     return NULL;
 }
 
+// The command: makes the study that the first operand names, of the second or of its own
+// scenario.
 static int make_study(const arguments *a)
 {
     const study_topic *topic = find_topic(a->operands[0]);

@@ -115,6 +115,7 @@ static void print_extremes(const sweep_order *o, const double *values)
     print_extreme(o, "largest", values, largest);
 }
 
+// A sweep as text: how many runs, their values, and the extremes.
 static void print_sweep(const sweep_order *o, const sweep_store *store,
                         const double *values, size_t failed, const sweep_progress *p)
 {
@@ -301,6 +302,7 @@ static int run_and_report_sweep(const sweep_order *o, sweep_store *store)
     return result;
 }
 
+// The command: plans the sweep, runs what is missing of it, and reports it.
 static int sweep_and_report(const arguments *a, scenario *base)
 {
     sweep_order o = {.arguments = a, .scenario = base, .quantity = "peak_force_N"};

@@ -11,6 +11,7 @@
 #include "ui/commands/interrupts.h"
 #include "ui/commands/results.h"
 
+// The rows of all tables.
 static json_t *tables_json(const void *found)
 {
     const thesis_tables *t = found;
@@ -18,7 +19,6 @@ static json_t *tables_json(const void *found)
 
     // a row for each table, model and quantity
     for (int i = 0; i < t->row_count; i++) {
-
         const table_row *row = &t->rows[i];
         json_t *line = json_of("table:t k2_factor:n model:t quantity:t", row->table,
                                row->k2_factor, row->model, row->quantity);
@@ -68,6 +68,8 @@ static void print_cells(const char *name, const double *values, double scale,
     printf("\n");
 }
 
+// A row: the voltages, what the thesis prints and what was computed, and by how much
+// these differ.
 static void print_row(const thesis_tables *t, const table_row *row)
 {
     const table_quantity *quantity = quantity_of_row(row);
@@ -102,6 +104,7 @@ static bool continues_table(const thesis_tables *t, int i)
            strcmp(before->model, row->model) == 0;
 }
 
+// The tables one below the other, each with its heading.
 static void print_rows(const thesis_tables *t)
 {
     const char *model_word = is_fitted(t) ? "" : " model";
@@ -152,6 +155,7 @@ static const char *const inferred[] = {
 };
 enum { INFERRED = sizeof inferred / sizeof inferred[0] };
 
+// The tables, how near they come out, and what had to be inferred for that.
 static void print_tables(const void *found)
 {
     const thesis_tables *t = found;
@@ -170,6 +174,7 @@ static void print_tables(const void *found)
 
 // --- the command -----------------------------------------------------------------------
 
+// The command: computes the tables and writes them.
 static int compute_and_report_tables(const arguments *a)
 {
     static const command_results results = {.json = tables_json, .text = print_tables};

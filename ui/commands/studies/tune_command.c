@@ -62,6 +62,7 @@ static robust_table table_of_laws(const tuner *t, robust_law laws[CHANGED])
     return table;
 }
 
+// What was found; over a set, beside the keys of robust.
 static json_t *tuning_json(const void *found)
 {
     const tuner *t = found;
@@ -92,6 +93,7 @@ static json_t *tuning_json(const void *found)
                         t->rows[TUNED].value, numbers);
 }
 
+// A parameter as given and as tuned, and what a tenth less or more of it gives.
 static void print_tuned_parameter(const tuner *t, int axis)
 {
     const tune_result *changed = changed_rows(t, axis);
@@ -103,6 +105,7 @@ static void print_tuned_parameter(const tuner *t, int axis)
     say("\n");
 }
 
+// The values that were found, and how they do on other draws.
 static void print_tuning(const void *found)
 {
     const tuner *t = found;
@@ -251,6 +254,7 @@ static int report_stopped_search(const tuner *t, bool any)
                              t->tuning.plan.run_count, what_became);
 }
 
+// Searches for the best values, judges them and reports both. Returns the exit status.
 static int search_and_report(tuner *t)
 {
     const arguments *a = t->arguments;
@@ -315,6 +319,7 @@ static tune_request request_of_tuning(const arguments *a, const scenario *s,
     return asked;
 }
 
+// The command: reads what is asked for, and searches.
 static int tune_and_report(const arguments *a, scenario *s)
 {
     if (a->varies.count == 0 || a->minimise == NULL) {
