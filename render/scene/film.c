@@ -68,6 +68,7 @@ static status write_frames(film_painter *p, const char *path, fault *f)
     return film_file_commit(g_steal_pointer(&file), f);
 }
 
+// A film from first to last; options that are 0 get their usual values.
 status film_write(const film_run *runs, int run_count, const film_options *options,
                   const char *path, fault *f)
 {

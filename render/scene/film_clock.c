@@ -56,6 +56,7 @@ static void set_windows(film_clock *c)
     c->taper = TAPER * span;
 }
 
+// The clock of runs shown together: slow near the impacts of all of them.
 film_clock film_clock_of(const run_result *const *results, int count, double seconds,
                          double slow)
 {
@@ -87,6 +88,7 @@ film_clock film_clock_round(double start, double end, double instant, double slo
     return c;
 }
 
+// 1 far from all impacts, the full factor at one, half a cosine between.
 double film_clock_slowness(const film_clock *c, double t)
 {
     double outside = HUGE_VAL;
@@ -101,6 +103,8 @@ double film_clock_slowness(const film_clock *c, double t)
     return 1 + (c->slow - 1) * 0.5 * (1 + cos(M_PI * outside / c->taper));
 }
 
+// Which instant of the run a film shows: the run is cut into cells, each of which takes a
+// share of the film as large as it is slow.
 double film_clock_time(const film_clock *c, double film_time, double *speed)
 {
     assert(c->seconds > 0);

@@ -97,6 +97,7 @@ static status check_folder(const char *path, fault *f)
     return STATUS_OK;
 }
 
+// A film by its ending, else a folder of frames.
 status film_file_check(const char *path, fault *f)
 {
     const bool film = format_of(path) != NULL;

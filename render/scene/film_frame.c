@@ -133,6 +133,7 @@ static status create_scenes(film_painter *p, fault *f)
     return STATUS_OK;
 }
 
+// Paints what does not change, and prepares a scene for each run.
 status film_painter_create(film_painter **out, const film_run *runs, int run_count,
                            const film_options *options, fault *f)
 {

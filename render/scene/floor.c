@@ -133,6 +133,7 @@ static void paint_floor_ground(scene *sc)
     }
 }
 
+// The floor round a point, and an empty map of the shadows on it.
 void scene_floor_init(scene *sc, vector middle, double reach)
 {
     assert(reach > 0);
@@ -324,6 +325,7 @@ static uint32_t darkened(uint32_t rgb, float shadow, uint32_t threshold)
     return 0xFF000000U | red << 16 | green << 8 | ((rgb & 255) * light + threshold) >> 16;
 }
 
+// The floor as it is without shadows, darker where they fall.
 status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f)
 {
     cell_box shade;

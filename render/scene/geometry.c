@@ -112,6 +112,7 @@ static vector circle_at(vector across, vector other, int i, int sides)
     return vector_sum(vector_scaled(across, cos(angle)), sin(angle), other);
 }
 
+// A solid of revolution, by a ring of quadrilaterals between two circles each.
 void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count,
                 material of)
 {
@@ -246,6 +247,7 @@ static void cap_ribbon(mesh *m, const section *s, vector place, vector along,
     }
 }
 
+// A bar of eight sides along the points, with a flat end at each.
 void mesh_ribbon(mesh *m, const vector *places, int count, double height,
                  double thickness, material of)
 {
@@ -282,6 +284,7 @@ void mesh_ribbon(mesh *m, const vector *places, int count, double height,
     }
 }
 
+// A tube along the points, open at its ends.
 void mesh_tube(mesh *m, const vector *places, const material *of, int count,
                double radius)
 {
@@ -334,6 +337,7 @@ static const struct {
     [CAMERA_FREE] = {NULL, 0, 0, 0.12},
 };
 
+// A named view, or two angles of its own.
 bool camera_read(const char *text, camera_view *view)
 {
     for (size_t i = 0; i < CAMERA_FREE; i++) {
@@ -373,6 +377,7 @@ static double fit_axis(const vector *points, int count, vector axis, vector back
     return (right + left) / 2;
 }
 
+// The camera that sees all points within a window, from as near as can be.
 camera camera_fit(camera_view view, double heading, const vector *points, int count,
                   int width, int height, camera_window window)
 {

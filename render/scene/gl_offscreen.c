@@ -319,6 +319,7 @@ void gl_offscreen_destroy(gl_offscreen *g)
     g_free(g);
 }
 
+// Draws triangles and reads the pixels of a region back.
 status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region,
                          uint32_t *pixels, fault *f)
 {

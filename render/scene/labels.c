@@ -26,8 +26,8 @@ static text_block fact(const scene *sc, const char *markup)
     return (text_block){.markup = markup, .size = FACT_LETTERS * labels_scale(sc)};
 }
 
-static void put_label(const scene *sc, cairo_t *cr, text_block t, double x, double y,
-                      colour ink)
+static void put_text_line(const scene *sc, cairo_t *cr, text_block t, double x, double y,
+                          colour ink)
 {
     text_put(cr, sc->context, &t, x, y, (anchor){0, 0}, ink);
 }
@@ -102,7 +102,7 @@ void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double 
     if (sc->options.theme == THEME_DARK) {
         ink = (colour){1, 0.62, 0.30};
     }
-    put_label(sc, cr, t, x, y, ink);
+    put_text_line(sc, cr, t, x, y, ink);
 }
 
 void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char *facts,
@@ -118,18 +118,18 @@ void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char 
     text_block t = {.markup = escaped, .size = TITLE_LETTERS * scale, .bold = true};
     const double line = text_measure(sc->context, &t).height;
     t.width = width;
-    put_label(sc, cr, t, left, top - (text_measure(sc->context, &t).height - line),
-              sc->around->strong);
-    put_label(sc, cr, fact(sc, facts), left, bottom - FACT_LETTERS * 1.25 * scale,
-              sc->around->faint);
+    put_text_line(sc, cr, t, left, top - (text_measure(sc->context, &t).height - line),
+                  sc->around->strong);
+    put_text_line(sc, cr, fact(sc, facts), left, bottom - FACT_LETTERS * 1.25 * scale,
+                  sc->around->faint);
 }
 
 void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom, double larger)
 {
     assert(larger > 0);
     g_autofree char *text = text_printf("contact, %.1f times", larger);
-    put_label(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc),
-              sc->around->faint);
+    put_text_line(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc),
+                  sc->around->faint);
 }
 
 void labels_instants(const scene *sc, cairo_t *cr, const double *times,
@@ -153,7 +153,7 @@ void labels_instants(const scene *sc, cairo_t *cr, const double *times,
         g_autofree char *text = text_printf("%.1f\u2009ms", 1e3 * times[i]);
         const text_block t = fact(sc, text);
         const text_size own = text_measure(sc->context, &t);
-        put_label(sc, cr, t, right - own.width, y, sc->around->faint);
+        put_text_line(sc, cr, t, right - own.width, y, sc->around->faint);
         set_colour(cr, inks[i]);
         cairo_rectangle(cr, right - width - 10 * scale - swatch,
                         y + own.height / 2 - 2.5 * scale, swatch, 5 * scale);

@@ -246,6 +246,8 @@ static void fill_triangle(sample_buffer *b, const flat_triangle *t,
     }
 }
 
+// Takes in a new set of triangles: the tiles they touch and, without OpenGL, what they
+// fill.
 void samples_take(sample_buffer *b, const gl_triangles *t)
 {
     memset(b->touched, 0, (size_t)b->tiles_across * (size_t)b->tiles_down);
@@ -347,6 +349,7 @@ static void lay_tile(const sample_buffer *b, pixel_box region, pixel_box tile,
     }
 }
 
+// Lays the means of all tiles that were touched over the picture.
 void samples_lay_over(sample_buffer *b, pixel_box region, double opacity,
                       cairo_surface_t *onto)
 {

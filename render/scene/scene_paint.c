@@ -281,6 +281,7 @@ static status paint_ghost(scene *sc, double time, double opacity, cairo_surface_
     return scene_painter_paint(sc->painter, &ghost, onto, f);
 }
 
+// The arm at the last instant in full colour, at earlier ones as ghosts behind it.
 status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto,
                    fault *f)
 {
@@ -352,6 +353,7 @@ static status check_instants(const scene_picture *p, fault *f)
     return STATUS_OK;
 }
 
+// A picture of the run as a PNG file.
 status scene_write(const scene_picture *p, const char *path, fault *f)
 {
     g_autoptr(scene) sc = NULL;

@@ -12,6 +12,7 @@ static double between(double a, double b, double share)
     return a + share * (b - a);
 }
 
+// Joints and row at an instant, linear between two rows of the trace.
 sample scene_joints(const trace *t, const parameters *p, double time, vector *joints)
 {
     assert(t->row_count > 0 && isfinite(time));
@@ -92,6 +93,7 @@ int scene_curve_length(int links)
     return span_count(links) * pieces_of_span(links) + 1;
 }
 
+// A quadratic B-spline over the joints: a parabola from each link's middle to the next's.
 int scene_curve(const vector *joints, int links, vector *curve)
 {
     assert(links > 0);
@@ -148,6 +150,7 @@ static double end_of_approach(const run_result *result)
     return fmin(end, m->first_contact_s + delay);
 }
 
+// Instants at which the tip has gone even parts of its path to the largest force.
 void scene_instants(const run_result *result, double *times, int count)
 {
     assert(result->trace.row_count > 0 && count > 0);

@@ -114,6 +114,7 @@ vector scene_contact(const scene *sc, const sample *row)
     return sc->joints[sc->links];
 }
 
+// The arrow of the force that the wall exerts; false if there is none to be seen.
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end)
 {
     double l = sc->length, length = row->force / sc->options.force * ARROW_LENGTH * l;
@@ -156,6 +157,7 @@ void scene_build_arm(scene *sc, mesh *into, double time)
     }
 }
 
+// The way of the tip as a tube, paler towards its beginning.
 void scene_build_trail(scene *sc, double from, double time)
 {
     const trace *t = &sc->result->trace;

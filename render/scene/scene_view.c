@@ -112,6 +112,7 @@ static double arm_heading(const scene *sc)
     return sum / (double)t->row_count;
 }
 
+// Chooses the camera, the light and the floor by what is ever to be seen.
 void scene_set_view(scene *sc)
 {
     vector points[EXTENT_POINTS];

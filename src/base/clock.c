@@ -10,6 +10,7 @@ double clock_seconds(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+// The instant some seconds from now, for waits of the monotonic clock.
 struct timespec clock_after(double seconds)
 {
     assert(seconds >= 0);

@@ -33,6 +33,7 @@ static void write_quoted(FILE *stream, const char *text)
     }
 }
 
+// name[unit], in quotes where it needs them.
 void csv_heading(csv_writer *w, const char *name, const char *unit)
 {
     static const char special[] = ",\"\n";

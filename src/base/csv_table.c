@@ -220,7 +220,7 @@ void csv_table_finish(csv_table *t)
 // --- columns ---------------------------------------------------------------------------
 
 // Length of a heading's name, without "[unit]" and the blanks before it.
-static size_t name_length(const char *heading)
+static size_t heading_name_length(const char *heading)
 {
     const char *bracket = strrchr(heading, '[');
     const size_t whole = strlen(heading);
@@ -233,9 +233,10 @@ static size_t name_length(const char *heading)
     return (size_t)(bracket - heading);
 }
 
+// The column of a heading, or of its name in another unit; -1 for none.
 int csv_table_find(const csv_table *t, const char *heading)
 {
-    const size_t length = name_length(heading);
+    const size_t length = heading_name_length(heading);
     int found = -1;
 
     // the heading itself, or the first of its name in another unit
@@ -244,7 +245,7 @@ int csv_table_find(const csv_table *t, const char *heading)
         if (strcmp(here, heading) == 0) {
             return c;
         }
-        if (name_length(here) == length && strncmp(here, heading, length) == 0) {
+        if (heading_name_length(here) == length && strncmp(here, heading, length) == 0) {
             found = c;
         }
     }
@@ -285,7 +286,7 @@ static const struct {
 // Copies the unit of a heading; false if it has none.
 static bool copy_unit(const char *heading, char unit[32])
 {
-    const char *bracket = heading + name_length(heading);
+    const char *bracket = heading + heading_name_length(heading);
     while (is_blank(*bracket)) {
         bracket++;
     }
@@ -326,6 +327,7 @@ static bool read_number_field(const char *field, bool gaps, double *number)
     return decimal_read(field, number, &rest) && *rest == '\0' && isfinite(*number);
 }
 
+// The numbers of a column in a unit, which is converted to.
 status csv_table_numbers(const csv_table *t, const char *heading, const char *unit,
                          bool gaps, double **values, fault *f)
 {
@@ -374,6 +376,7 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
     return STATUS_OK;
 }
 
+// A column of times, which may not go back.
 status csv_table_times(const csv_table *t, const char *heading, double **values, fault *f)
 {
     status code = csv_table_numbers(t, heading, "s", false, values, f);
@@ -393,6 +396,7 @@ status csv_table_times(const csv_table *t, const char *heading, double **values,
     return code;
 }
 
+// The value of a column at an instant, held or linear between rows.
 double csv_table_at(const double *times, const double *values, size_t rows, double time,
                     bool linear)
 {

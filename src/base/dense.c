@@ -75,13 +75,9 @@ bool dense_solve_columns(int n, int columns, double *matrix, double *right)
     return solve_columns(n, columns, matrix, right);
 }
 
-// exp(h A) by scaling and squaring of its Taylor series.
-void matrix_exponential(const double *matrix, int size, double h, double *result,
-                        double *power, double *product)
+// The largest sum of a row's absolute values, times h.
+static double largest_row_sum(const double *matrix, int size, double h)
 {
-    const size_t bytes = (size_t)(size * size) * sizeof(double);
-
-    // the largest row sum
     double norm = 0;
     for (int i = 0; i < size; i++) {
         double row = 0;
@@ -90,17 +86,47 @@ void matrix_exponential(const double *matrix, int size, double h, double *result
         }
         norm = fmax(norm, row);
     }
+    return norm;
+}
+
+// How often a number must be halved to be at most 0.5.
+static int halvings_to_half(double number)
+{
+    int octave;
+    const double mantissa = frexp(number, &octave);
+    if (!(number > 0.5)) {
+        return 0;
+    }
+    if (mantissa > 0.5) {
+        return octave + 1;
+    }
+    return octave;
+}
+
+// factor times the product of two square matrices.
+static void matrix_product(const double *left, const double *right, int size,
+                           double factor, double *product)
+{
+    for (int i = 0; i < size; i++) {
+        for (int j = 0; j < size; j++) {
+            double sum = 0;
+            for (int k = 0; k < size; k++) {
+                sum += left[i * size + k] * right[k * size + j];
+            }
+            product[i * size + j] = sum * factor;
+        }
+    }
+}
+
+// exp(h A) by scaling and squaring of its Taylor series.
+void matrix_exponential(const double *matrix, int size, double h, double *result,
+                        double *power, double *product)
+{
+    const size_t bytes = (size_t)(size * size) * sizeof(double);
 
     // halved until the series converges fast
-    int octave;
-    const double mantissa = frexp(norm, &octave);
-    int squarings = 0;
-    if (norm > 0.5 && mantissa > 0.5) {
-        squarings = octave + 1;
-    } else if (norm > 0.5) {
-        squarings = octave;
-    }
-    double scale = h / ldexp(1, squarings);
+    const int squarings = halvings_to_half(largest_row_sum(matrix, size, h));
+    const double scale = h / ldexp(1, squarings);
     memset(result, 0, bytes);
     memset(power, 0, bytes);
     for (int i = 0; i < size; i++) {
@@ -118,15 +144,7 @@ void matrix_exponential(const double *matrix, int size, double h, double *result
             right = power;
             factor = scale / term;
         }
-        for (int i = 0; i < size; i++) {
-            for (int j = 0; j < size; j++) {
-                double sum = 0;
-                for (int k = 0; k < size; k++) {
-                    sum += left[i * size + k] * right[k * size + j];
-                }
-                product[i * size + j] = sum * factor;
-            }
-        }
+        matrix_product(left, right, size, factor, product);
 
         if (term > TERMS) {
             memcpy(result, product, bytes);

@@ -182,6 +182,7 @@ static void read_sum(expression_reader *r)
     }
 }
 
+// The whole text must be one expression.
 status expression_read(expression *e, const char *text, expression_find *find,
                        void *context, fault *f)
 {

@@ -36,6 +36,7 @@ static void reverse_bits(double *real, double *imaginary, size_t n)
     }
 }
 
+// The radix-2 transform of Cooley and Tukey (1965), in place.
 void fourier_transform(double *real, double *imaginary, size_t n)
 {
     assert(is_power_of_two(n));

@@ -141,7 +141,8 @@ static void write_object(FILE *stream, const json_t *object, int depth)
     fputc('}', stream);
 }
 
-// An array of plain values stands on one line.
+// An array: plain values stand on one line, values with parts of their own on lines of
+// their own.
 static void write_array(FILE *stream, const json_t *array, int depth)
 {
     size_t length = json_array_size(array);
@@ -149,7 +150,6 @@ static void write_array(FILE *stream, const json_t *array, int depth)
 
     fputc('[', stream);
 
-    // values stand side by side, what has parts of its own on lines of its own
     for (size_t i = 0; i < length; i++) {
         const json_t *element = json_array_get(array, i);
         nested = json_is_object(element) || json_is_array(element);

@@ -238,12 +238,14 @@ static decimal shortest_decimal(double value)
     // the ends of the interval that reads back as value, in quarters of 2^q: half way to
     // its neighbours, the one below being nearer at a power of two; ends belong to even
     // numbers
-    const bool closer_below = stored == 0 && exponent > 1, odd = c % 2 == 1;
+    const bool closer_below = stored == 0 && exponent > 1;
+    const uint64_t odd = c % 2;
     const int k = floor_log10_power(q, closer_below);
     const int shift = q + floor_log2_power(-k) + 1;
     uint64_t power[2];
     wide_power_of_ten(-k, power);
-    const uint64_t lower = round_to_odd(power, (4 * c - 2 + closer_below) << shift);
+    const uint64_t below = closer_below ? 1 : 2;
+    const uint64_t lower = round_to_odd(power, (4 * c - below) << shift);
     const uint64_t middle = round_to_odd(power, (4 * c) << shift);
     const uint64_t upper = round_to_odd(power, (4 * c + 2) << shift);
     return without_zeros(nearest_within(lower + odd, middle, upper - odd, k));
@@ -356,6 +358,7 @@ void number_format_short(char *text, double value)
     write_digits(text, value, 6);
 }
 
+// A decimal number and the blanks behind it, in any locale.
 bool decimal_read(const char *text, double *value, const char **rest)
 {
     // what strtod would take beyond a decimal number
@@ -378,6 +381,7 @@ bool decimal_read(const char *text, double *value, const char **rest)
     return true;
 }
 
+// Ascending, NaN behind all numbers.
 int compare_numbers(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;

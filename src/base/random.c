@@ -20,6 +20,7 @@ void random_seed(random_generator *g, uint64_t seed)
     }
 }
 
+// A number of 0 to bound - 1, each as likely.
 uint64_t random_below(random_generator *g, uint64_t bound)
 {
     assert(bound > 0);
@@ -32,6 +33,7 @@ uint64_t random_below(random_generator *g, uint64_t bound)
     return bits % bound;
 }
 
+// The numbers 0 to count - 1 in a random order (Fisher and Yates, inside out).
 void random_permutation(random_generator *g, size_t *order, size_t count)
 {
     assert(order != NULL || count == 0);

@@ -80,6 +80,7 @@ void shared_array_init(shared_array *a, size_t size)
     *a = (shared_array){.size = size};
 }
 
+// Keeps addresses free for the most elements there may be, or for fewer if it must.
 bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t most)
 {
     assert(least > 0 && least <= most);
@@ -142,6 +143,7 @@ bool shared_array_grow(shared_array *a, size_t count)
     return true;
 }
 
+// The first elements of another array: full chunks are shared, the rest is copied.
 bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 {
     assert(a->size == from->size && a->mapped == 0);

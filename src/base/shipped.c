@@ -56,6 +56,7 @@ static bool path_in(const char *folder, const char *name, char **path)
     return true;
 }
 
+// Beside this program: in the source tree, under the prefix, or where it was configured.
 char *shipped_path(shipped_part part)
 {
     char *path;

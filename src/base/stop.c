@@ -9,6 +9,7 @@
 
 atomic_bool stop_everything;
 
+// Asks whether to stop, but only every few milliseconds: so many looks go without.
 bool stop_ask(stop_request *s)
 {
     if (++s->looks < s->due) {

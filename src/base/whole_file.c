@@ -108,6 +108,7 @@ static bool is_same_file(const char *path, const char *other)
            a.st_ino == b.st_ino;
 }
 
+// Whether two results, or a result and an input, would be one file.
 bool whole_file_same_place(const char *path, const char *other)
 {
     char folder[PATH_MAX], other_folder[PATH_MAX];
@@ -207,6 +208,7 @@ static void remove_temporary(whole_file *w)
     replace_unfinished(w->temporary, NULL);
 }
 
+// Opens the stream to a temporary beside the target, to a device, or to the output.
 status whole_file_open(whole_file *w, const char *path, fault *f)
 {
     mode_t mode;
@@ -241,6 +243,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
     return STATUS_OK;
 }
 
+// Why not all that was ever written to a stream has arrived, 0 if it has.
 int stream_failure(FILE *stream)
 {
     errno = 0;
@@ -305,6 +308,7 @@ static int place_temporary(whole_file *w, bool whole)
     return reason;
 }
 
+// Puts the file in its place if it was written, is whole and is on the disk.
 status whole_file_close(whole_file *w, status written, fault *f)
 {
     const bool wanted = written == STATUS_OK;

@@ -56,6 +56,7 @@ int edit_distance(const char *a, const char *b, int limit)
     return smaller_count(row[lb], limit);
 }
 
+// A search for a word of which at most half of the letters differ, and at most four.
 nearest_word nearest_begin(const char *word)
 {
     // the first distance that is too far

@@ -279,6 +279,7 @@ static void say_end(account *a)
     }
 }
 
+// The account in the order of time, from the approach to the end.
 int run_account(const scenario *s, const run_result *run,
                 char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE])
 {

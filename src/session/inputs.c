@@ -267,6 +267,7 @@ status session_push(session *s, double impulse, fault *f)
     return session_pull(s, impulse, 0, f);
 }
 
+// An impulse at the tip, as an input of a gesture (0: alone).
 status session_pull(session *s, double impulse, unsigned gesture, fault *f)
 {
     session_input in = {.kind = SESSION_INPUT_PUSH,
@@ -313,6 +314,7 @@ status session_undo(session *s, fault *f)
     return STATUS_OK;
 }
 
+// Puts the next input in again, and goes to where it takes effect.
 status session_redo(session *s, fault *f)
 {
     FAULT_IF(s->input_count == s->input_total, f, STATUS_BAD_ARGUMENT, "nothing to redo");
@@ -326,6 +328,7 @@ status session_redo(session *s, fault *f)
     return STATUS_OK;
 }
 
+// The new value is an input of its own, behind the old one and of the same instant.
 status session_change_input(session *s, int index, const char *text, fault *f)
 {
     assert(index >= 0 && index < s->input_count);
@@ -349,6 +352,7 @@ status session_change_input(session *s, int index, const char *text, fault *f)
     return code;
 }
 
+// Takes an input out and puts it first among those that can be redone.
 status session_drop_input(session *s, int index, fault *f)
 {
     assert(index >= 0 && index < s->input_count);
@@ -370,6 +374,7 @@ status session_drop_input(session *s, int index, fault *f)
     return code;
 }
 
+// Replaces all inputs at once.
 status session_take_inputs(session *s, const session_input *inputs, int count, fault *f)
 {
     assert(count >= 0);

@@ -68,6 +68,7 @@ bool run_origin_is_of(const run_origin *o, const session *s)
     return same && same_base(&o->base, &s->base);
 }
 
+// A session as it was: the scenario, its changes, and the cursor.
 status session_reopen(session *s, const run_origin *o, double patience, fault *f)
 {
     scenario base;

@@ -32,6 +32,7 @@ double session_end(const session *s)
     return s->run.trace.rows[s->run.trace.row_count - 1].time;
 }
 
+// Moves the cursor to an instant of the run, and to the row there.
 void session_seek(session *s, double time)
 {
     double end = session_end(s);
@@ -60,6 +61,7 @@ void session_seek(session *s, double time)
     note_seen(s);
 }
 
+// Moves the cursor by rows, as far as there are any.
 bool session_step(session *s, long rows)
 {
     long last = (long)s->run.trace.row_count - 1, to = (long)s->row + rows;
@@ -292,6 +294,7 @@ static void go_on_with_present_run(session *s, bool unfinished)
     session_seek(s, s->now);
 }
 
+// Computes the run of the scenario with the inputs in effect.
 status session_compute(session *s, fault *f)
 {
     // what it would be
@@ -324,6 +327,7 @@ status session_compute(session *s, fault *f)
     return STATUS_OK;
 }
 
+// Takes over the rows that were computed in the background meanwhile.
 bool session_follow(session *s)
 {
     if (s->computing == NULL) {
@@ -361,6 +365,7 @@ bool session_stop(session *s)
     return stopped;
 }
 
+// Resumes a run that was stopped.
 status session_go_on(session *s, fault *f)
 {
     FAULT_IF(s->computing != NULL || s->run.summary.status != STATUS_STOPPED, f,
@@ -383,6 +388,7 @@ parameters session_parameters_at(const session *s, double time)
     return scenario_parameters_at(&s->effective, time);
 }
 
+// Keeps a run to be compared with the present one.
 status session_keep_beside(session *s, const run_result *run, fault *f)
 {
     run_result kept;

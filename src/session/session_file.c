@@ -96,6 +96,7 @@ static void write_run(FILE *stream, const kept_run *r)
     }
 }
 
+// The runs, each behind its scenario, then the baseline and the lines of the view.
 void session_file_write(FILE *stream, const session_file *file)
 {
     assert(file->run_count > 0);
@@ -493,6 +494,7 @@ static status read_session_lines(session_reader *r, FILE *stream)
     return STATUS_OK;
 }
 
+// The whole file, or nothing.
 status session_file_read(session_file *file, const char *path, fault *f)
 {
     *file = (session_file){.baseline = -1};
@@ -518,6 +520,7 @@ status session_file_read(session_file *file, const char *path, fault *f)
     return STATUS_OK;
 }
 
+// Whether a file or program that a run read has changed since.
 bool session_file_is_outdated(const session_file *file)
 {
     bool outdated = false;
