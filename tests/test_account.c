@@ -2,7 +2,7 @@
 #include "tests/session_fixture.h"
 
 #include "src/base/random.h"
-#include "src/session/session.h"
+#include "src/session/account.h"
 
 static char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
 

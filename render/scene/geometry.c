@@ -402,7 +402,8 @@ camera camera_fit(camera_view view, double heading, const vector *points, int co
     out.focal_x = shorter / width / tan(kinds[view.kind].half_view);
     out.focal_y = shorter / height / tan(kinds[view.kind].half_view);
 
-    // as near as the window, in which the view is narrower, lets all points be seen
+    // as near as the window, in which the view is narrower, lets all points be seen, with
+    // the eye at (x, y) across
     const double share_x = window.right - window.left;
     const double share_y = window.bottom - window.top;
     double x, y;

@@ -95,7 +95,7 @@ static char *read_bytes(FILE *file, size_t most, size_t *length)
     return bytes;
 }
 
-// Faults say what happened behind the name of the file.
+// The whole file, or as much of it as is wanted.
 char *input_file_read(const char *path, size_t most, size_t *length, fault *why)
 {
     assert(most > 0);

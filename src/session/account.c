@@ -1,5 +1,4 @@
-// The account of a run in sentences, from its events and energies.
-#include "src/session/session.h"
+#include "src/session/account.h"
 
 #include <assert.h>
 #include <math.h>

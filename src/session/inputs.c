@@ -404,3 +404,10 @@ status session_take_inputs(session *s, const session_input *inputs, int count, f
     free(old);
     return STATUS_OK;
 }
+
+bool session_same_input(const session_input *a, const session_input *b)
+{
+    return a->kind == b->kind && a->parameter == b->parameter && a->value == b->value &&
+           (a->kind == SESSION_INPUT_START || a->time == b->time) &&
+           strcmp(a->text, b->text) == 0;
+}

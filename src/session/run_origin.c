@@ -1,10 +1,8 @@
-// Where a run comes from: the scenario as it was opened and the changes, kept so that a
-// session can be opened from them again.
+#include "src/session/run_origin.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "src/session/session.h"
 
 status run_origin_take(run_origin *o, const session *s, fault *f)
 {
@@ -50,13 +48,6 @@ bool same_base(const scenario *a, const scenario *b)
                strcmp(one->text, other->text) == 0;
     }
     return same;
-}
-
-bool session_same_input(const session_input *a, const session_input *b)
-{
-    return a->kind == b->kind && a->parameter == b->parameter && a->value == b->value &&
-           (a->kind == SESSION_INPUT_START || a->time == b->time) &&
-           strcmp(a->text, b->text) == 0;
 }
 
 bool run_origin_is_of(const run_origin *o, const session *s)

@@ -7,7 +7,7 @@
 // of a scenario's text begin with "| ".
 #pragma once
 
-#include "src/session/session.h"
+#include "src/session/run_origin.h"
 
 enum { SESSION_FILE_RUNS = 8, SESSION_FILE_NAME = 256, SESSION_FILE_LINES = 512 };
 

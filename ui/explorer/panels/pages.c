@@ -11,6 +11,7 @@
 
 #include "src/arm/modes.h"
 #include "src/base/text_stream.h"
+#include "src/session/account.h"
 #include "src/session/session.h"
 #include "src/study/linear/linear.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "src/run/run.h"
-#include "src/session/session.h"
+#include "src/session/run_origin.h"
 #include "src/study/sweep_axis.h"
 #include "ui/explorer/state/command_list.h"
 
