@@ -195,9 +195,9 @@ static void put_frame_row(screen *s, int x, int y, int width, const uint32_t gly
 void screen_frame(screen *s, int x, int y, int width, int height, ink colour,
                   const char *title)
 {
-    static const uint32_t upper[] = {0x250c, 0x2500, 0x2510}; // ┌─┐
-    static const uint32_t sides[] = {0x2502, ' ', 0x2502};    // │ │
-    static const uint32_t lower[] = {0x2514, 0x2500, 0x2518}; // └─┘
+    static const uint32_t upper[] = {0x250c, GLYPH_LINE, 0x2510};        // ┌─┐
+    static const uint32_t sides[] = {GLYPH_UPRIGHT, ' ', GLYPH_UPRIGHT}; // │ │
+    static const uint32_t lower[] = {0x2514, GLYPH_LINE, 0x2518};        // └─┘
 
     // of one row it is the lower edge
     put_frame_row(s, x, y, width, upper, colour, colour);

@@ -68,6 +68,28 @@ typedef struct screen {
 // characters.
 #define GLYPH_PICTURE 0x110000u
 
+// The glyphs of lines and signs on it.
+enum {
+    GLYPH_LINE = 0x2500,      // ─
+    GLYPH_UPRIGHT = 0x2502,   // │
+    GLYPH_TICK_LEFT = 0x2524, // ┤
+    GLYPH_TICK_DOWN = 0x252c, // ┬
+    GLYPH_DASHES = 0x254c,    // ╌
+    GLYPH_DOTS = 0x2508,      // ┈
+    GLYPH_HALF_LINE = 0x2574, // ╴
+    GLYPH_CURSOR = 0x2506,    // ┆
+    GLYPH_LIGHT_SHADE = 0x2591,
+    GLYPH_SHADE = 0x2592,
+    GLYPH_DARK_SHADE = 0x2593,
+    GLYPH_BLOCK = 0x2588,
+    GLYPH_DISC = 0x25cf,       // ●
+    GLYPH_CIRCLE = 0x25cb,     // ○
+    GLYPH_TRIANGLE = 0x25b2,   // ▲
+    GLYPH_ARROW_DOWN = 0x25bc, // ▼
+    GLYPH_DIAMOND = 0x25c6,    // ◆
+    GLYPH_POINTER = 0x25b8     // ▸
+};
+
 // Gives a screen width x height empty cells, at least 1 x 1; it keeps its pictures.
 void screen_resize(screen *s, int width, int height);
 void screen_finish(screen *s);

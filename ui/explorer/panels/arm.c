@@ -241,9 +241,9 @@ static void draw_wall(const stage *g, const parameters *p, const sample *at)
     const int row = c->y + (int)(plan_y(&g->view, y + shift.y) / 4);
     if (row > c->y && row < c->y + c->height) {
         for (int i = 0; i < 3; i++) {
-            screen_put(c->screen, column + i, row - 1, 0x2592, INK_WALL);
+            screen_put(c->screen, column + i, row - 1, GLYPH_SHADE, INK_WALL);
         }
-        screen_put(c->screen, column + 1, row, 0x25c6, INK_WALL);
+        screen_put(c->screen, column + 1, row, GLYPH_DIAMOND, INK_WALL);
     }
 }
 
@@ -263,7 +263,8 @@ static void draw_force(const stage *g, plane_vector tip, double force, double pe
     canvas_line(c, 2.0 * column, y - 8 - length, 2.0 * column, 4.0 * head_row - 1,
                 INK_FORCE);
     if (head_row > 0) {
-        screen_put(c->screen, c->x + column, c->y + head_row, 0x25bc, INK_FORCE);
+        screen_put(c->screen, c->x + column, c->y + head_row, GLYPH_ARROW_DOWN,
+                   INK_FORCE);
     }
 }
 

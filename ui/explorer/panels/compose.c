@@ -23,8 +23,8 @@ static void write_change_count(const session *e, char text[64])
             later++;
         }
     }
-    snprintf(text, 64, "\u25cf %d change%s", e->input_count,
-             e->input_count == 1 ? "" : "s");
+    const char *noun = e->input_count == 1 ? "change" : "changes";
+    snprintf(text, 64, "\u25cf %d %s", e->input_count, noun);
     if (later > 0) {
         text_add(text, 64, ", \u25cb %d later", later);
     }
@@ -186,7 +186,8 @@ static bar status_bar(const explorer_model *model, const explorer_view *view)
     bar b = {.count = 0};
 
     // the run
-    bar_add(&b, 0, "%s %-9s", playing ? "\u25b6" : "\u2016", state_of_run(e, playing));
+    const char *sign = playing ? "\u25b6" : "\u2016";
+    bar_add(&b, 0, "%s %-9s", sign, state_of_run(e, playing));
     if (e->computing != NULL) {
         bar_add(&b, 2, "computing %.1f of %g s (Esc stops)", session_end(e),
                 p->run.duration);
@@ -202,8 +203,9 @@ static bar status_bar(const explorer_model *model, const explorer_view *view)
 
     // the arm there
     add_equations(&b, p);
-    bar_add(&b, 2, "%s%s", row->contact != 0 ? "in contact" : "free flight",
-            row->sticking != 0 ? ", hub sticks" : "");
+    const char *contact = row->contact != 0 ? "in contact" : "free flight";
+    const char *hub = row->sticking != 0 ? ", hub sticks" : "";
+    bar_add(&b, 2, "%s%s", contact, hub);
     if (view->mark.set) {
         bar_add(&b, 3, "from mark %.5g s", e->now - view->mark.time);
     }
@@ -452,14 +454,14 @@ static int fold_stack(const explorer_model *model, layout *lay, int rows[PANEL_I
 static void draw_tabs(const layout *lay, screen *s, area a)
 {
     char text[96] = " Tab: ";
-    bool any = false;
-    for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
+    const char *joint = "";
+    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         if (lay->drawn.folded[id]) {
-            text_add(text, sizeof text, "%s%s", any ? ", " : "",
-                     panel_of((panel_id)id)->name);
-            any = true;
+            text_add(text, sizeof text, "%s%s", joint, panel_of(id)->name);
+            joint = ", ";
         }
     }
+    const bool any = joint[0] != '\0';
     if (any && a.height > 1) {
         text_add(text, sizeof text, " ");
         screen_text(s, a.x + 1, a.y + a.height - 1, a.width - 2, INK_DIM, text);

@@ -153,6 +153,7 @@ static void write_legend(const explorer_model *model, const pane *p, int signal,
                          legend how, char *text, size_t size)
 {
     const signal_info *info = &signal_table[signal];
+    const char *name;
     char value[48];
     format_value(model, p, signal, how == LEGEND_TIGHT, value, sizeof value);
     const bool has_own_unit = unit_of(p)[0] == '\0' && info->unit[0] != '\0';
@@ -162,8 +163,8 @@ static void write_legend(const explorer_model *model, const pane *p, int signal,
         if (has_own_unit) {
             text_add(value, sizeof value, " %s", info->unit);
         }
-        snprintf(text, size, "%s %-8s", how == LEGEND_NAMES ? info->name : info->ascii,
-                 value);
+        name = how == LEGEND_NAMES ? info->name : info->ascii;
+        snprintf(text, size, "%s %-8s", name, value);
         break;
     case LEGEND_TIGHT:
         snprintf(text, size, "%s %-6s", info->ascii, value);
@@ -198,10 +199,10 @@ static int legend_width(const explorer_model *model, const pane *p, legend how)
 static void draw_legend(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, int index, legend how, area a)
 {
-    static const uint32_t lines[] = {[LINE_SOLID] = 0x2500,
-                                     [LINE_DASHED] = 0x254c,
-                                     [LINE_DOTTED] = 0x2508,
-                                     [LINE_DASH_DOT] = 0x2574};
+    static const uint32_t lines[] = {[LINE_SOLID] = GLYPH_LINE,
+                                     [LINE_DASHED] = GLYPH_DASHES,
+                                     [LINE_DOTTED] = GLYPH_DOTS,
+                                     [LINE_DASH_DOT] = GLYPH_HALF_LINE};
     const pane *p = &view->panes.pane[index];
     const pane_look look = pane_look_of(view, p);
     if (a.width < 1) {
@@ -215,7 +216,8 @@ static void draw_legend(const explorer_model *model, const explorer_view *view,
         write_legend(model, p, p->signals[k], how, text, sizeof text);
         const int length = 2 + (int)strlen(text);
         const ink shade = is_hidden(p, k) ? INK_FRAME : look.colour[k];
-        screen_put(s, a.x, a.y, a.width > 0 ? lines[look.style[k]] : ' ', shade);
+        const uint32_t line = a.width > 0 ? lines[look.style[k]] : ' ';
+        screen_put(s, a.x, a.y, line, shade);
         area_text(s, area_right(a, 2), shade, text);
 
         // a click hides the signal
@@ -590,9 +592,9 @@ static void draw_panes(const explorer_model *model, const explorer_view *view,
 // The box that the mouse draws.
 static void tint_box(const zoom_box *b, screen *s)
 {
-    const area box = {b->x0 < b->x1 ? b->x0 : b->x1, b->y0 < b->y1 ? b->y0 : b->y1,
-                      abs(b->x1 - b->x0) + 1, abs(b->y1 - b->y0) + 1};
-    area_tint(s, box, INK_SELECTED);
+    const int left = b->x0 < b->x1 ? b->x0 : b->x1, width = abs(b->x1 - b->x0) + 1;
+    const int top = b->y0 < b->y1 ? b->y0 : b->y1, height = abs(b->y1 - b->y0) + 1;
+    area_tint(s, (area){left, top, width, height}, INK_SELECTED);
 }
 
 static void draw_curves(const explorer_model *model, const explorer_view *view,

@@ -252,11 +252,11 @@ static void draw_band_cell(screen *s, int x, int y, const lane_band *band, bool 
     if (band->value < 0) {
         return;
     }
-    uint32_t glyph = 0x2500;
+    uint32_t glyph = GLYPH_LINE;
     if (band->name[0] == '\0') {
-        glyph = 0x2592;
+        glyph = GLYPH_SHADE;
     } else if (begins) {
-        glyph = 0x2502;
+        glyph = GLYPH_UPRIGHT;
     }
     screen_put(s, x, y, glyph, band->colour);
 }
@@ -322,10 +322,10 @@ static void draw_change_lane(const explorer_model *model, const explorer_view *v
         }
 
         // what is still to come is hollow and dim
-        uint32_t sign = 0x25cf;
+        uint32_t sign = GLYPH_DISC;
         ink shade = INK_EVENT;
         if (c->time > model->session.now) {
-            sign = 0x25cb;
+            sign = GLYPH_CIRCLE;
             shade = INK_DIM;
         }
         char text[LINE_TEXT];
@@ -352,9 +352,9 @@ static void draw_map(const explorer_model *model, const explorer_view *view, scr
     const int left = map_column(e, line, from), right = map_column(e, line, to);
     for (int i = 0; i < line.width; i++) {
         if (i >= left && i <= right) {
-            screen_put(s, line.x + i, line.y, 0x2592, INK_CURSOR);
+            screen_put(s, line.x + i, line.y, GLYPH_SHADE, INK_CURSOR);
         } else {
-            screen_put(s, line.x + i, line.y, 0x2500, INK_FRAME);
+            screen_put(s, line.x + i, line.y, GLYPH_LINE, INK_FRAME);
         }
     }
 
@@ -363,9 +363,9 @@ static void draw_map(const explorer_model *model, const explorer_view *view, scr
         const event *v = &t->events[i];
         const int at = map_column(e, line, v->time);
         if (v->kind == EVENT_IMPACT && at < line.width) {
-            screen_put(s, line.x + at, line.y, 0x25b2, INK_EVENT);
+            screen_put(s, line.x + at, line.y, GLYPH_TRIANGLE, INK_EVENT);
         } else if (event_is_input(v->kind) && at < line.width) {
-            screen_put(s, line.x + at, line.y, 0x25cf, INK_EVENT);
+            screen_put(s, line.x + at, line.y, GLYPH_DISC, INK_EVENT);
         }
     }
 
@@ -374,7 +374,7 @@ static void draw_map(const explorer_model *model, const explorer_view *view, scr
     if (now >= line.width) {
         now = line.width - 1;
     }
-    screen_put(s, line.x + now, line.y, 0x2506, INK_TITLE);
+    screen_put(s, line.x + now, line.y, GLYPH_CURSOR, INK_TITLE);
 }
 
 static void draw_lane_label(const explorer_model *model, screen *s, area a, lane l)

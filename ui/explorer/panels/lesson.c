@@ -66,7 +66,8 @@ static void draw_lesson(const explorer_model *model, const explorer_view *view,
     const area inside = area_inside(a);
     write_step(model, text);
     const int count = text_wrap(text, inside.width, lines, STEP_LINES, NULL);
-    area_lines(s, inside, model->lesson.passed ? INK_TITLE : INK_TEXT, lines, count);
+    const ink shade = model->lesson.passed ? INK_TITLE : INK_TEXT;
+    area_lines(s, inside, shade, lines, count);
 }
 
 const panel lesson_panel = {.name = "lesson", .rows = lesson_rows, .draw = draw_lesson};

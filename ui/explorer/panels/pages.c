@@ -43,8 +43,11 @@ typedef struct page {
 
 static help_line *new_line(page *p)
 {
-    static help_line beyond;
-    help_line *line = p->count < p->most ? &p->lines[p->count++] : &beyond;
+    static help_line beyond; // what has no room on the page
+    help_line *line = &beyond;
+    if (p->count < p->most) {
+        line = &p->lines[p->count++];
+    }
     *line = (help_line){0};
     return line;
 }
@@ -67,8 +70,8 @@ static void add_to_line(help_line *line, int column, const text_line *part)
 static void add_column(page *p, int column, const char *text, help_line *begun)
 {
     text_line parts[TEXT_LINES];
-    const int room = p->width - column;
-    const int count = text_wrap(text, room > 1 ? room : 1, parts, TEXT_LINES, NULL);
+    const int room = p->width > column ? p->width - column : 1;
+    const int count = text_wrap(text, room, parts, TEXT_LINES, NULL);
     for (int i = 0; i < count; i++) {
         help_line *line = begun;
         if (i > 0 || begun == NULL) {
@@ -231,7 +234,8 @@ static area draw_page(const explorer_view *view, layout *lay, screen *s, area bo
     for (int i = 0; i < rows; i++) {
         const help_line *line = &p->lines[scroll + i];
         area row = area_row(inside, i);
-        area_text(s, row, line->heading ? INK_EVENT : INK_TEXT, line->text);
+        const ink shade = line->heading ? INK_EVENT : INK_TEXT;
+        area_text(s, row, shade, line->text);
         if (line->keys < row.width) {
             row.width = line->keys;
         }

@@ -72,7 +72,7 @@ void draw_palette(const explorer_view *view, const prompt *p, layout *lay, scree
     // a frame at the bottom of the area, with a line for words where there is no entry
     char title[64];
     const int width = s->width < MOST_WIDTH ? s->width : MOST_WIDTH;
-    const int height = 2 + (rows > 0 ? rows : 1);
+    const int height = rows > 0 ? rows + 2 : 3;
     const area frame = {0, a.y + a.height - height, width, height};
     snprintf(title, sizeof title,
              "%d of all (\u2191 \u2193 choose, Enter takes, Esc closes)", count);

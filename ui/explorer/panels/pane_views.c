@@ -89,7 +89,7 @@ static bool draw_phase(const explorer_model *model, const explorer_view *view, s
     const double at_x = dot_x(&p, signal_value(row, of->signals[1])) / 2;
     const double at_y = dot_y(&p, signal_value(row, of->signals[0])) / 4;
     if (at_x >= 0 && at_x < a.width && at_y >= 0 && at_y < a.height) {
-        screen_put(s, a.x + (int)at_x, a.y + (int)at_y, 0x25cf, INK_CURSOR);
+        screen_put(s, a.x + (int)at_x, a.y + (int)at_y, GLYPH_DISC, INK_CURSOR);
     }
     return true;
 }
@@ -189,10 +189,13 @@ static bool draw_spectrum(const explorer_model *model, const explorer_view *view
     const int lines = lines_that_matter(amplitude), peak = highest_line(amplitude, lines);
     const double highest = peak > 0 ? amplitude[peak] : 0;
     const bool constant = highest <= ROUNDING * largest_size(series, SERIES);
-    plane p = {.canvas = {s, a.x, a.y, a.width, a.height},
-               .x = {0, lines / (to - from)},
-               .y = {0, constant ? 0 : highest}};
-    p.y = value_range_opened(p.y);
+    value_range heights = {0, 0};
+    if (!constant) {
+        heights.high = highest;
+    }
+    const plane p = {.canvas = {s, a.x, a.y, a.width, a.height},
+                     .x = {0, lines / (to - from)},
+                     .y = value_range_opened(heights)};
     *axis = p.y;
     if (constant) {
         draw_ends(s, a, p.x, "constant, to [Hz]");

@@ -40,11 +40,11 @@ static bool find_track(const explorer_view *view, const parameters *p, track *k)
 static void draw_track(layout *lay, screen *s, area a, const track *k)
 {
     for (int i = 0; i < a.width; i++) {
-        screen_put(s, a.x + i, a.y, 0x2500, INK_FRAME);
+        screen_put(s, a.x + i, a.y, GLYPH_LINE, INK_FRAME);
     }
     const long at = lround(slider_share(&k->scale, k->value) * (a.width - 1));
     if (at >= 0 && at < a.width) {
-        screen_put(s, a.x + (int)at, a.y, 0x25cf, k->knob);
+        screen_put(s, a.x + (int)at, a.y, GLYPH_DISC, k->knob);
     }
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_SLIDER, k->parameter, a});
 }
@@ -251,8 +251,10 @@ static void draw_parameters(const explorer_model *model, const explorer_view *vi
     const int first = draw_first_line(selected, rows, inside.height);
 
     for (int i = 0; i < count; i++) {
-        const bool behind = expands && i > selected;
-        const int row = (behind ? i + 1 : i) - first;
+        int row = i - first;
+        if (expands && i > selected) {
+            row++;
+        }
         if (row < 0 || row >= inside.height) {
             continue;
         }
@@ -267,7 +269,7 @@ static void draw_parameters(const explorer_model *model, const explorer_view *vi
         }
     }
 
-    // over the line above it where there is no room for both
+    // what the selected parameter has to say
     const int slider_row = selected + 1 - first;
     if (expands && slider_row < inside.height) {
         draw_wide_slider(model, lay, s, area_row(inside, slider_row), &wide);
@@ -286,7 +288,8 @@ static void point_at_slider(explorer_model *model, explorer_view *view,
     }
     if (wheel != 0) {
         parameter_list_select(&view->parameters, (parameter_line){h->index, false});
-        act_nudge(model, view, input, wheel < 0 ? "" : "-1");
+        const char *direction = wheel < 0 ? "" : "-1"; // as the command takes it
+        act_nudge(model, view, input, direction);
     } else if (g->event.kind == POINTER_RELEASE) {
         act_release_slider(model, view, input);
     } else {

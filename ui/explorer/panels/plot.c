@@ -173,7 +173,7 @@ void plot_frame_cursor(const plot_frame *f, screen *s, double time)
     const int column = f->canvas.x + (int)(plot_x(f, time) / 2);
     for (int y = f->canvas.y; y < f->canvas.y + f->canvas.height; y++) {
         if (s->cells[(long)y * s->width + column].glyph == ' ') {
-            screen_put(s, column, y, 0x2506, INK_CURSOR);
+            screen_put(s, column, y, GLYPH_CURSOR, INK_CURSOR);
         }
     }
 }
@@ -183,7 +183,7 @@ static void draw_level_behind(const canvas *c, screen *s, int y, const char *nam
 {
     const int end = c->x + c->width, name_at = end - (int)strlen(name);
     for (int x = c->x; x < end; x++) {
-        uint32_t glyph = 0x2508;
+        uint32_t glyph = GLYPH_DOTS;
         if (x >= name_at) {
             glyph = (uint32_t)name[x - name_at];
         }
@@ -294,12 +294,12 @@ void draw_value_axis(screen *s, area a, value_range axis)
     for (int row = 0; row < a.height; row++) {
         const int y = a.y + row, tick = tick_of_row(&t, axis, a.height, row);
         if (tick < 0) {
-            screen_put(s, line, y, 0x2502, INK_FRAME);
+            screen_put(s, line, y, GLYPH_UPRIGHT, INK_FRAME);
             continue;
         }
         char text[TICK_TEXT + 8];
         axis_label(&t, tick, text, sizeof text);
-        screen_put(s, line, y, 0x2524, INK_FRAME);
+        screen_put(s, line, y, GLYPH_TICK_LEFT, INK_FRAME);
         screen_print(s, a.x, y, label_width, INK_DIM, "%*s", label_width, text);
     }
 }
@@ -308,8 +308,8 @@ void draw_value_axis(screen *s, area a, value_range axis)
 static void draw_time_tick(screen *s, int x, int y)
 {
     cell *at = &s->cells[(long)y * s->width + x];
-    if (at->glyph == 0x2500) {
-        at->glyph = 0x252c;
+    if (at->glyph == GLYPH_LINE) {
+        at->glyph = GLYPH_TICK_DOWN;
     }
 }
 
@@ -317,9 +317,10 @@ static void draw_time_tick(screen *s, int x, int y)
 static void draw_instants(screen *s, area a, double from, double to)
 {
     enum { LABEL = 14 }; // cells that a label may take
-    const int end = a.x + a.width, room_for = a.width / LABEL;
+    const int end = a.x + a.width;
+    const int wanted = a.width / LABEL > 2 ? a.width / LABEL : 2;
     ticks t;
-    ticks_between(&t, from, to, room_for > 2 ? room_for : 2);
+    ticks_between(&t, from, to, wanted);
 
     // each tick with its label below, unless that would touch the one before
     int free = a.x;
@@ -358,9 +359,9 @@ static void draw_contact(const session *e, screen *s, area line, double from, do
     for (int i = 0; i < line.width; i++) {
         const double time = from + (to - from) * (i + 0.5) / line.width;
         if (time <= e->seen && t->rows[trace_row_at(t, time)].contact != 0) {
-            screen_put(s, line.x + i, line.y, 0x2592, INK_FORCE);
+            screen_put(s, line.x + i, line.y, GLYPH_SHADE, INK_FORCE);
         } else {
-            screen_put(s, line.x + i, line.y, 0x2500, INK_FRAME);
+            screen_put(s, line.x + i, line.y, GLYPH_LINE, INK_FRAME);
         }
     }
 }
@@ -370,11 +371,11 @@ static void draw_contact(const session *e, screen *s, area line, double from, do
 static void draw_event(screen *s, int x, int y, event_kind kind, bool seen)
 {
     if (kind == EVENT_IMPACT && seen) {
-        screen_put(s, x, y, 0x25b2, INK_EVENT);
+        screen_put(s, x, y, GLYPH_TRIANGLE, INK_EVENT);
     } else if (event_is_input(kind) && seen) {
-        screen_put(s, x, y, 0x25cf, INK_EVENT);
+        screen_put(s, x, y, GLYPH_DISC, INK_EVENT);
     } else if (event_is_input(kind)) {
-        screen_put(s, x, y, 0x25cb, INK_DIM);
+        screen_put(s, x, y, GLYPH_CIRCLE, INK_DIM);
     }
 }
 
@@ -392,7 +393,7 @@ area draw_time_axis(const explorer_model *model, const explorer_view *view, scre
     for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
         if (t->events[i].kind == EVENT_CONTACT) {
             const int x = time_column(model, view, line, t->events[i].time);
-            screen_put(s, x, a.y, 0x2592, INK_FORCE);
+            screen_put(s, x, a.y, GLYPH_SHADE, INK_FORCE);
         }
     }
     draw_instants(s, line, from, to);

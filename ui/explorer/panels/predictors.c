@@ -198,8 +198,8 @@ static void draw_predictors(const explorer_model *model, const explorer_view *vi
     const session *e = &model->session;
     const bool touches = session_sample(e)->contact != 0;
     const size_t r = free_row(e);
-    area_frame(s, a, INK_FRAME,
-               touches ? "when it touched: peak" : "if it touched now: peak");
+    const char *title = touches ? "when it touched: peak" : "if it touched now: peak";
+    area_frame(s, a, INK_FRAME, title);
 
     // the thesis's two know no other number of links
     const area inside = area_inside(a);

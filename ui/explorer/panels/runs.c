@@ -60,9 +60,10 @@ static void draw_runs(const explorer_model *model, const explorer_view *view, la
     const run_list *list = &model->pinned;
     const area inside = area_inside(a);
     area_frame(s, a, INK_FRAME, "runs, peaks (R: list)");
+    const ink present_ink = view->looks.by_run ? run_ink(-1) : INK_TEXT;
     draw_legend_line(s, area_row(inside, 0), "now",
                      model->session.run.summary.peak_force_N, style_pattern(LINE_SOLID),
-                     view->looks.by_run ? run_ink(-1) : INK_TEXT);
+                     present_ink);
 
     // those that are pinned, the baseline with a mark
     for (int i = 0; i < list->count && i + 1 < inside.height; i++) {
@@ -73,7 +74,7 @@ static void draw_runs(const explorer_model *model, const explorer_view *view, la
         pinned_look(model, view, i, &pattern, &colour);
         draw_legend_line(s, line, p->name, p->run.summary.peak_force_N, pattern, colour);
         if (i == list->baseline) {
-            screen_put(s, a.x + 1, line.y, 0x25b8, INK_EVENT);
+            screen_put(s, a.x + 1, line.y, GLYPH_POINTER, INK_EVENT);
         }
         layout_add_hit(lay, (hit_area){PANEL_RUNS, PART_LINES, i, line});
     }

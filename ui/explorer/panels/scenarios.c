@@ -31,8 +31,11 @@ static int first_scenario(int selected, int count, int first, int height)
 static void draw_scenario(const scenario_menu *menu, int index, screen *s, area a)
 {
     enum { TITLE_AT = 30 }; // column, where the name is not longer
-    const int used = 2 + area_text(s, a, INK_TEXT, menu->names[index]);
-    const area room = area_right(a, used > TITLE_AT ? used : TITLE_AT);
+    int title_at = 2 + area_text(s, a, INK_TEXT, menu->names[index]);
+    if (title_at < TITLE_AT) {
+        title_at = TITLE_AT;
+    }
+    const area room = area_right(a, title_at);
     if (room.width > 0) {
         text_line words;
         const char *title = scenario_menu_text(menu, index).title;
@@ -48,7 +51,7 @@ static void draw_scenario(const scenario_menu *menu, int index, screen *s, area 
 static void draw_preview(const scenario_menu *menu, screen *s, area a)
 {
     for (int x = 0; x < a.width; x++) {
-        screen_put(s, a.x + x, a.y, 0x2500, INK_FRAME);
+        screen_put(s, a.x + x, a.y, GLYPH_LINE, INK_FRAME);
     }
 
     // nothing where the filter hides it
@@ -75,8 +78,8 @@ static void draw_scenarios(const explorer_model *model, const explorer_view *vie
     const area a = page_area(body, 96, menu->count + EDGES + preview);
     const area inside = area_inside(a);
     area_frame(s, a, INK_CURSOR, "scenarios (Enter opens, / filters, Esc closes)");
-    area_print(s, inside, INK_DIM, "/ filter: %s%s", menu->filter,
-               menu->filtering ? "_" : "");
+    const char *cursor = menu->filtering ? "_" : "";
+    area_print(s, inside, INK_DIM, "/ filter: %s%s", menu->filter, cursor);
 
     // where the lines are; they lie over the page, so a click meets them first
     int selected;

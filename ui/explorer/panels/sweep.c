@@ -114,12 +114,12 @@ static void draw_chart(const explorer_model *model, screen *s, area a)
         if (joined) {
             canvas_line(&c, before.x, before.y, at.x, at.y, INK_SERIES_0);
         } else {
-            mark_on_chart(s, &c, at, 0x25cb, INK_SERIES_0);
+            mark_on_chart(s, &c, at, GLYPH_CIRCLE, INK_SERIES_0);
         }
         before = at;
     }
     const chart_point selected = point_on_chart(sweep, &c, range, sweep->selected);
-    mark_on_chart(s, &c, selected, 0x25cf, INK_EVENT);
+    mark_on_chart(s, &c, selected, GLYPH_DISC, INK_EVENT);
 }
 
 // The runs: value and metric, from the one on that lets the selected one be seen.
@@ -155,7 +155,8 @@ static void draw_swept_runs(const explorer_model *model, layout *lay, screen *s,
 // given.
 static void draw_map_cell(screen *s, area a, double share, bool selected)
 {
-    static const uint32_t shades[] = {' ', 0x2591, 0x2592, 0x2593, 0x2588};
+    static const uint32_t shades[] = {' ', GLYPH_LIGHT_SHADE, GLYPH_SHADE,
+                                      GLYPH_DARK_SHADE, GLYPH_BLOCK};
     enum { SHADES = sizeof shades / sizeof shades[0] };
     uint32_t glyph = '-'; // no number
     if (isfinite(share)) {
@@ -265,7 +266,8 @@ static void write_sweep_title(char *title, size_t size, const lab_sweep *sweep, 
     } else if ((int)strlen(last) <= room) {
         snprintf(title, size, "%s%s", last, count);
     } else {
-        snprintf(title, size, "%.*s..%s", room > 2 ? room - 2 : 0, last, count);
+        const int bytes = room > 2 ? room - 2 : 0;
+        snprintf(title, size, "%.*s..%s", bytes, last, count);
     }
 }
 

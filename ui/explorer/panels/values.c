@@ -69,11 +69,11 @@ static void draw_difference(screen *s, area a, int signal, double value, double 
 {
     const double size = fmax(fabs(value), fabs(other));
     const bool differs = fabs(value - other) > 1e-6 * size;
-    number_text text = draw_number(value - other);
-    if (signal_is_state(signal)) {
-        snprintf(text.text, sizeof text.text, "%s", differs ? "other" : "same");
-    }
-    screen_print(s, a.x, a.y, NUMBER, differs ? INK_WARNING : INK_DIM, "%9s", text.text);
+    const ink shade = differs ? INK_WARNING : INK_DIM;
+    const char *state = differs ? "other" : "same";
+    const number_text number = draw_number(value - other);
+    const char *text = signal_is_state(signal) ? state : number.text;
+    screen_print(s, a.x, a.y, NUMBER, shade, "%9s", text);
 }
 
 static void draw_value(screen *s, area line, int signal, const sample *row,
@@ -119,8 +119,10 @@ static void draw_values(const explorer_model *model, const explorer_view *view,
     const int first = layout_keep_scroll(lay, PANEL_VALUES, count - inside.height);
     layout_add_hit(lay, (hit_area){.panel = PANEL_VALUES, .area = a});
     char title[LINE_TEXT + 64];
-    snprintf(title, sizeof title, "values%s%s%s", compared.name,
-             filter[0] != '\0' ? " /" : "", filter);
+    snprintf(title, sizeof title, "values%s", compared.name);
+    if (filter[0] != '\0') {
+        text_add(title, sizeof title, " /%s", filter);
+    }
     if (count > inside.height) {
         text_add(title, sizeof title, ", %d-%d of %d", first + 1, first + inside.height,
                  count);
@@ -187,8 +189,10 @@ static void integral_unit(const char *unit, char *text, size_t size)
         snprintf(text, size, "%.*s", (int)length - 1, unit);
     } else if (length > 2 && strcmp(unit + length - 2, "/s") == 0) {
         snprintf(text, size, "%.*s", (int)length - 2, unit);
+    } else if (length > 0) {
+        snprintf(text, size, "%s s", unit);
     } else {
-        snprintf(text, size, "%s%ss", unit, length > 0 ? " " : "");
+        snprintf(text, size, "s");
     }
 }
 
