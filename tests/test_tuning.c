@@ -348,7 +348,7 @@ TEST(test_delays_and_limits_follow_a_change)
     p.sensor.dac_bits = 8;
     DONE(rig_retune(r, &p, 0, &f));
     check_relative(r->dac.step, 6.0 / 256, 1e-14);
-    check_close(r->told.control.rate, 100, 0);
+    check_close(r->known.control.rate, 100, 0);
     rig_destroy(r);
 }
 

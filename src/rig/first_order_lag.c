@@ -11,18 +11,18 @@
 
 // Lengths that differ by less than this share of the time constant are the same but for
 // rounding: the square of the share is nothing.
-#define SAME_STRETCH 1e-9
+#define SAME_LENGTH 1e-9
 
-// Halves of a stretch until a turn is known to the last digit, of which its instant needs
-// half.
+// Halves of an interval until a turn is known to the last digit, of which its instant
+// needs half.
 enum { TURN_BISECTIONS = 32 };
 
 // exp(-h/time_constant), h no shorter than SHORT_STEP.
 static double left_after(first_order_lag *y, double h)
 {
-    const double longer = h - y->stretch;
-    if (!(fabs(longer) < SAME_STRETCH * y->time_constant)) {
-        y->stretch = h;
+    const double longer = h - y->interval;
+    if (!(fabs(longer) < SAME_LENGTH * y->time_constant)) {
+        y->interval = h;
         y->left = plain_exp(-h / y->time_constant);
         return y->left;
     }
@@ -77,7 +77,7 @@ void lag_strike(first_order_lag *y, double pulse)
 
 // --- where it turns --------------------------------------------------------------------
 
-// The way of input and lag through a stretch, at a share u of it.
+// The way of input and lag through an interval, at a share u of it.
 typedef struct passage {
     const first_order_lag *start;
     const lag_input *input;
@@ -140,7 +140,7 @@ int lag_turns(const first_order_lag *y, const lag_input *input,
     if (y->time_constant == 0) {
         const double top = -p.f.slope / (2 * p.f.curve);
         turns[0] = input_at(&p, top);
-        return top > 0 && top < 1;
+        return top > 0 && top < 1 ? 1 : 0;
     }
 
     // what begins or ends without a lead has that of its rate there

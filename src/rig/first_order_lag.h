@@ -5,13 +5,13 @@
 typedef struct first_order_lag {
     double time_constant; // [s], 0 for a sensor without it
     double value;         // in the input's unit
-    // the factor by which a transient decays over a stretch of that length, kept because
-    // most stretches are, up to rounding, as long as the one before
-    double stretch; // [s], 0: none
-    double left;    // exp(-stretch/time_constant)
+    // the factor by which a transient decays over that interval, kept because
+    // most intervals are, up to rounding, as long as the one before
+    double interval; // [s], 0: none
+    double left;     // exp(-interval/time_constant)
 } first_order_lag;
 
-// An input over a stretch of time: the parabola through its ends that has that mean.
+// An input over an interval: the parabola through its ends that has that mean.
 typedef struct lag_input {
     double length; // [s]
     double first, last, mean;

@@ -68,21 +68,25 @@ static const controller withheld_law =
 
 static status explain_withheld(const rig *r, fault *f)
 {
-    const control_parameters *c = &r->told.control;
-    const bool program = c->law == LAW_PROCESS;
+    const control_parameters *c = &r->known.control;
+    const char *path = "control.plugin", *what = "load the plug-in", *code = c->plugin;
+    if (c->law == LAW_PROCESS) {
+        path = "control.command";
+        what = "start the program";
+        code = c->command;
+    }
     return fault_set_at(
-        f, STATUS_NOT_ALLOWED, program ? "control.command" : "control.plugin",
+        f, STATUS_NOT_ALLOWED, path,
         "the scenario wants to %s '%.200s', which can do whatever you can, with any "
         "file: if you trust it and all that it loads, allow that with --allow-code",
-        program ? "start the program" : "load the plug-in",
-        program ? c->command : c->plugin);
+        what, code);
 }
 
 // --- beginning and end -----------------------------------------------------------------
 
 // Finds the controller that control.law names; one from outside only if the user allows
 // it.
-static status open_law(rig *r, const parameters *p, const rig_options *o, fault *f)
+static status open_named_law(rig *r, const parameters *p, const rig_options *o, fault *f)
 {
     const control_parameters *c = &p->control;
     r->law = controller_of(c->law);
@@ -113,6 +117,49 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
     return STATUS_OK;
 }
 
+// The loop before its first sample, at t = 0.
+static void prepare_loop(rig *r, const parameters *p)
+{
+    r->known = *p;
+    r->ramp = r->wanted_force = p->control.force;
+    r->period = 1 / p->control.rate;
+    rig_take_delay(r, p);
+    r->jitter = p->control.jitter;
+    random_seed(&r->clock, ~(uint64_t)p->control.seed);
+
+    // nothing has been read or answered
+    r->lock = -1;
+    r->read_time = -1;
+    r->predicted_force = (double)NAN;
+    r->output = no_answer();
+
+    // sensors and converter
+    sensors_init(&r->sensors, &p->sensor, p->control.seed);
+    r->voltage_limit = motor_command_limit(&p->motor);
+    r->dac = converter_of(r->sensors.p.dac_bits, r->voltage_limit);
+}
+
+// Finds the controller and starts it; it may refuse the lock, its settings or the arm.
+static status install_law(rig *r, const parameters *p, const rig_options *o, fault *f)
+{
+    if (o->law != NULL) {
+        r->given = *o->law;
+        r->law = r->given.law;
+    } else {
+        TRY(open_named_law(r, p, o, f));
+    }
+    if (!r->withheld) {
+        TRY(rig_lock(r, p->control.lock, f));
+    }
+    TRY(start_controller(r, p, f));
+    FAULT_IF(p->control.force_amplitude > 0 && r->law->tune == NULL, f,
+             STATUS_BAD_SCENARIO,
+             "control.force_amplitude: the controller '%s' takes its force at the start "
+             "only",
+             r->law->name);
+    return STATUS_OK;
+}
+
 status rig_create(rig **created, const parameters *p, const rig_options *o, fault *f)
 {
     static const rig_options none = {.law = NULL};
@@ -120,56 +167,17 @@ status rig_create(rig **created, const parameters *p, const rig_options *o, faul
         o = &none;
     }
     assert(p->control.rate > 0);
-    const given_law *given = o->law;
-    assert(given != NULL || p->control.law != LAW_NONE);
-    rig *r = calloc(1, sizeof *r);
+    assert(o->law != NULL || p->control.law != LAW_NONE);
     *created = NULL;
+    rig *r = calloc(1, sizeof *r);
     FAULT_IF(r == NULL, f, STATUS_NO_MEMORY, "no memory for the rig");
 
-    // the loop before its first sample, at t = 0
-    r->told = *p;
-    r->ramp = r->wanted_force = p->control.force;
-    r->period = 1 / p->control.rate;
-    rig_take_delay(r, p);
-    r->jitter = p->control.jitter;
-    r->voltage_limit = motor_command_limit(&p->motor);
-    r->read_time = -1;
-    r->predicted_force = (double)NAN;
-    r->output = no_answer();
-    sensors_init(&r->sensors, &p->sensor, p->control.seed);
-    r->dac = converter_of(r->sensors.p.dac_bits, r->voltage_limit);
-    random_seed(&r->clock, ~(uint64_t)p->control.seed);
-
-    // the controller, which may refuse the lock, its settings or the arm
-    if (given != NULL) {
-        r->given = *given;
-    } else {
-        r->given = (given_law){.law = NULL};
-    }
-    r->law = r->given.law;
-    status s = STATUS_OK;
-    if (given == NULL) {
-        s = open_law(r, p, o, f);
-    }
-    r->lock = -1;
-    if (s == STATUS_OK && !r->withheld) {
-        s = rig_lock(r, p->control.lock, f);
-    }
-    if (s == STATUS_OK) {
-        s = start_controller(r, p, f);
-    }
-    if (s == STATUS_OK && p->control.force_amplitude > 0 && r->law->tune == NULL) {
-        s = fault_set(
-            f, STATUS_BAD_SCENARIO,
-            "control.force_amplitude: the controller '%s' takes its force at the "
-            "start only",
-            r->law->name);
-    }
+    prepare_loop(r, p);
+    const status s = install_law(r, p, o, f);
     if (s != STATUS_OK) {
         rig_destroy(r);
         return s;
     }
-
     *created = r;
     return STATUS_OK;
 }
@@ -197,7 +205,7 @@ double rig_next_time(const rig *r)
 }
 
 // The commands that are due at an instant go out, and all but `most` of the others.
-static void apply(rig *r, double time, int most, bool *changed)
+static void apply_commands(rig *r, double time, int most, bool *changed)
 {
     while (r->pending_count > 0 &&
            (!instant_after(r->effect_time[0], time) || r->pending_count > most)) {
@@ -236,45 +244,57 @@ void rig_read(rig *r, double time, const sensed_motion *now)
     }
 }
 
+// What the controller answers to a sample [s]. STATUS_STOPPED, without a sentence, where
+// the run was asked to end while a program was to answer.
+static status ask_controller(rig *r, double time, const controller_input *input, fault *f)
+{
+    controller_output *out = &r->output;
+    *out = no_answer();
+    if (r->withheld) {
+        return explain_withheld(r, f);
+    }
+    r->law->sample(r->memory, input, out);
+
+    // a program that did not answer
+    if (r->process != NULL) {
+        const char *why;
+        const status code = process_failure(r->process, &why);
+        if (code == STATUS_STOPPED) {
+            return code;
+        }
+        if (code != STATUS_OK) {
+            return fault_set_at(f, code, "control.command", "at t = %.9g s %s", time,
+                                why);
+        }
+    }
+
+    // a command that no motor can be given
+    const char *what = "gave an infinite command";
+    if (isnan(out->command)) {
+        what = "did not answer with a command";
+    }
+    FAULT_IF(!isfinite(out->command), f, STATUS_NOT_FINITE,
+             "at t = %.9g s the controller '%s' %s, expected a finite number of "
+             "volts; its sensors read %.6g rad, %.6g rad/s and %.6g N",
+             time, r->law->name, what, input->encoder, input->tachometer, input->force);
+    return STATUS_OK;
+}
+
 // One sample: sensors, controller, D/A; the command is pending for the delay.
 static status take_sample(rig *r, double time, const sensed_motion *now, fault *f)
 {
     TRY(rig_follow_setpoint(r, time, f));
     rig_read(r, time, now);
     controller_input input = input_of(r, time);
-    if (r->told.control.force_limit > 0) {
+    r->predicted_force = (double)NAN;
+    if (r->known.control.force_limit > 0) {
         r->predicted_force = touch_forecast_sample(&r->forecast, &input);
-    } else {
-        r->predicted_force = (double)NAN;
     }
     input.predicted_force = r->predicted_force;
-    controller_output *out = &r->output;
-    *out = no_answer();
-    if (r->withheld) {
-        return explain_withheld(r, f);
-    }
-    r->law->sample(r->memory, &input, out);
-    const char *why = "";
-    status failed = STATUS_OK;
-    if (r->process != NULL) {
-        failed = process_failure(r->process, &why);
-    }
-    if (failed == STATUS_STOPPED) {
-        return failed;
-    }
-    if (failed != STATUS_OK) {
-        return fault_set_at(f, failed, "control.command", "at t = %.9g s %s", time, why);
-    }
-    FAULT_IF(!isfinite(out->command), f, STATUS_NOT_FINITE,
-             "at t = %.9g s the controller '%s' %s, expected a finite number of "
-             "volts; its sensors read %.6g rad, %.6g rad/s and %.6g N",
-             time, r->law->name,
-             isnan(out->command) ? "did not answer with a command"
-                                 : "gave an infinite command",
-             input.encoder, input.tachometer, input.force);
+    TRY(ask_controller(r, time, &input, f));
 
-    // what the D/A makes of it goes out after the delay
-    r->pending[r->pending_count] = converter_value(&r->dac, out->command);
+    // what the D/A makes of the command goes out after the delay
+    r->pending[r->pending_count] = converter_value(&r->dac, r->output.command);
     r->effect_time[r->pending_count++] = time + r->delay;
 
     // the next sample, scattered evenly over the jitter's width
@@ -294,7 +314,7 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
 
     // with jitter a sample may come before the command of one long before: that goes out
     // then
-    apply(r, time, samples ? r->pending_most : CONTROL_MOST_DELAY + 1, changed);
+    apply_commands(r, time, samples ? r->pending_most : CONTROL_MOST_DELAY + 1, changed);
 
     status s = STATUS_OK;
     if (samples) {
@@ -302,7 +322,7 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
     }
     // without a delay the new command takes effect at once
     if (s == STATUS_OK) {
-        apply(r, time, CONTROL_MOST_DELAY + 1, changed);
+        apply_commands(r, time, CONTROL_MOST_DELAY + 1, changed);
     }
     *changed = *changed || r->output.mode != mode;
     return s;

@@ -46,7 +46,7 @@ typedef struct rig {
     // take effect [s], and how many of them wait at most when the next sample is taken
     double pending[CONTROL_MOST_DELAY + 1], effect_time[CONTROL_MOST_DELAY + 1];
     int pending_count, pending_most;
-    parameters told;     // what sensors and controller have been told so far
+    parameters known;    // that sensors and controller have now
     double clock_start;  // nominal instant of sample clock_samples [s]
     long clock_samples;  // the sample from which the clock of the present rate counts
     double ramp;         // commanded force at present, on its ramp to control.force [N]

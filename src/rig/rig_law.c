@@ -17,8 +17,8 @@
 const controller *controller_of(int law)
 {
 #define LAW(name, prefix, ...) [LAW_##name] = &prefix##_law,
-    static const controller *const built_in[LAW_COUNT] = {
-        CONTROL_LAWS(LAW)[LAW_PLAYBACK] = &playback_law};
+    static const controller *const built_in[LAW_COUNT] = {[LAW_PLAYBACK] = &playback_law,
+                                                          CONTROL_LAWS(LAW)};
 #undef LAW
     assert(law >= 0 && law < LAW_COUNT);
     return built_in[law];
@@ -32,16 +32,14 @@ static void list_modes(const controller *law, char *text, size_t size)
     size_t used = 0;
     text[0] = '\0';
     for (int i = 0; law->modes != NULL && law->modes[i] != NULL && used < size; i++) {
-        const char *before = "";
-        if (i != 0) {
-            if (law->modes[i + 1] == NULL) {
-                before = " or ";
-            } else {
-                before = ", ";
-            }
+        const char *separator = ", ";
+        if (i == 0) {
+            separator = "";
+        } else if (law->modes[i + 1] == NULL) {
+            separator = " or ";
         }
-        used +=
-            (size_t)snprintf(text + used, size - used, "%s%.40s", before, law->modes[i]);
+        used += (size_t)snprintf(text + used, size - used, "%s%.40s", separator,
+                                 law->modes[i]);
     }
 }
 
@@ -114,8 +112,11 @@ controller_setup rig_nominal_setup(const rig *r, const parameters *p)
     const nominal_model_parameters *b = &p->belief;
 
     // the beam in two links, whatever the arm is
-    double m = p->arm.mass / 2, l = p->arm.length / 2, k2 = p->arm.k2;
-    double link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
+    const double m = p->arm.mass / 2, l = p->arm.length / 2;
+    const double link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
+
+    // its stiffness, as it was measured at the wanted force
+    double k2 = p->arm.k2;
     k2_table measured;
     if (k2_table_read(&measured, p->control.k2_table, NULL) == STATUS_OK &&
         measured.count > 0) {
@@ -170,19 +171,18 @@ static bool group_differs(const parameters *a, const parameters *b, const char *
     return false;
 }
 
-// Whether parameters say something else of what the controller is told than it was told
-// last.
-static bool tells_anew(const rig *r, const parameters *p)
+// Whether parameters are others than the controller knows.
+static bool controller_is_concerned(const rig *r, const parameters *p)
 {
-    const parameters *told = &r->told;
-    return group_differs(told, p, "control.") || group_differs(told, p, "belief.") ||
-           told->motor.voltage_limit != p->motor.voltage_limit ||
-           strcmp(told->control.settings, p->control.settings) != 0;
+    const parameters *known = &r->known;
+    return group_differs(known, p, "control.") || group_differs(known, p, "belief.") ||
+           known->motor.voltage_limit != p->motor.voltage_limit ||
+           strcmp(known->control.settings, p->control.settings) != 0;
 }
 
 status rig_takes(const rig *r, const parameters *p, fault *f)
 {
-    if (!(r->law->tune != NULL || !tells_anew(r, p))) {
+    if (r->law->tune == NULL && controller_is_concerned(r, p)) {
         return fault_set(
             f, STATUS_BAD_SCENARIO,
             "the controller '%s' takes its parameters at the start only: they "
@@ -215,11 +215,11 @@ static status tell_controller(rig *r, const parameters *p, double time, fault *f
 
 status rig_retune(rig *r, const parameters *p, double time, fault *f)
 {
-    parameters *told = &r->told;
-    const bool changes = tells_anew(r, p);
+    parameters *known = &r->known;
+    const bool changes = controller_is_concerned(r, p);
     TRY(rig_takes(r, p, f));
-    if (group_differs(told, p, "sensor.")) {
-        told->sensor = p->sensor;
+    if (group_differs(known, p, "sensor.")) {
+        known->sensor = p->sensor;
         sensors_retune(&r->sensors, &p->sensor);
         r->dac = converter_of(r->sensors.p.dac_bits, r->voltage_limit);
     }
@@ -229,10 +229,10 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
 
     // the arm as it was at the start is what the controller knows, whatever has changed
     // since
-    told->control = p->control;
-    told->belief = p->belief;
-    told->motor.voltage_limit = p->motor.voltage_limit;
-    memcpy(told->set, p->set, sizeof told->set);
+    known->control = p->control;
+    known->belief = p->belief;
+    known->motor.voltage_limit = p->motor.voltage_limit;
+    memcpy(known->set, p->set, sizeof known->set);
     r->voltage_limit = motor_command_limit(&p->motor);
     r->dac = converter_of(r->sensors.p.dac_bits, r->voltage_limit);
     r->jitter = p->control.jitter;
@@ -253,12 +253,12 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
     }
     r->period = period;
     rig_take_delay(r, p);
-    return tell_controller(r, told, time, f);
+    return tell_controller(r, known, time, f);
 }
 
 status rig_follow_setpoint(rig *r, double time, fault *f)
 {
-    const control_parameters *c = &r->told.control;
+    const control_parameters *c = &r->known.control;
 
     // the ramp towards the setpoint, and the wave upon it
     const double way = c->force - r->ramp, most = c->force_rate * (time - r->ramp_time);
@@ -268,17 +268,17 @@ status rig_follow_setpoint(rig *r, double time, fault *f)
         r->ramp = c->force;
     }
     r->ramp_time = time;
-    const double wave =
-        c->force_amplitude > 0
-            ? c->force_amplitude * inline_sin(2 * M_PI * c->force_frequency * time)
-            : 0;
+    double wave = 0;
+    if (c->force_amplitude > 0) {
+        wave = c->force_amplitude * inline_sin(2 * M_PI * c->force_frequency * time);
+    }
     const double wanted = larger(r->ramp + wave, 0);
 
     // the controller hears of a change only
     if (wanted == r->wanted_force) {
         return STATUS_OK;
     }
-    parameters now = r->told;
+    parameters now = r->known;
     now.control.force = r->wanted_force = wanted;
     now.set[PARAMETER_INDEX(control.force)] = 1;
     return tell_controller(r, &now, time, f);
@@ -289,13 +289,21 @@ bool rig_can_change(const parameters *p, int parameter)
     assert(parameter >= 0 && parameter < parameter_count);
     const char *path = parameter_table[parameter].path;
     const controller *law = controller_of(p->control.law);
-    const bool told = strncmp(path, "control.", 8) == 0 ||
-                      strncmp(path, "belief.", 7) == 0 ||
-                      parameter == PARAMETER_INDEX(motor.voltage_limit);
     if (!parameter_table[parameter].timed) {
         return false;
     }
-    return p->control.law == LAW_NONE || p->control.law == LAW_PROCESS || !told ||
-           parameter == PARAMETER_INDEX(control.lock) ||
-           (law != NULL && law->tune != NULL);
+
+    // what no controller knows may change, and the lock is the rig's own affair
+    const bool known = strncmp(path, "control.", 8) == 0 ||
+                       strncmp(path, "belief.", 7) == 0 ||
+                       parameter == PARAMETER_INDEX(motor.voltage_limit);
+    if (!known || parameter == PARAMETER_INDEX(control.lock)) {
+        return true;
+    }
+
+    // the rest where there is no law, or one that can be tuned
+    if (p->control.law == LAW_NONE || p->control.law == LAW_PROCESS) {
+        return true;
+    }
+    return law != NULL && law->tune != NULL;
 }

@@ -28,7 +28,9 @@ static __attribute__((noinline)) void draw_ahead(noise_source *n)
         x[i] = 2 * random_uniform(&n->random) - 1;
         y[i] = 2 * random_uniform(&n->random) - 1;
         r[i] = x[i] * x[i] + y[i] * y[i];
-        i += (r[i] > 0) & (r[i] < 1);
+        if (r[i] > 0 && r[i] < 1) {
+            i++;
+        }
     }
 
     for (int i = 0; i < PAIRS; i++) {
@@ -87,7 +89,7 @@ static void idealise(sensor_parameters *p)
 static void set_lag(first_order_lag *y, double time_constant)
 {
     y->time_constant = time_constant;
-    y->stretch = 0;
+    y->interval = 0;
 }
 
 void sensors_retune(sensors *s, const sensor_parameters *p)
@@ -137,7 +139,7 @@ static double fsr_shows(sensors *s, double force)
     return s->fsr_shown;
 }
 
-// Lets the FSR follow the force over a stretch: its play is moved wherever the force
+// Lets the FSR follow the force over an interval: its play is moved wherever the force
 // turns.
 static void follow_with_fsr(sensors *s, const lag_input *force)
 {
@@ -350,13 +352,22 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
         convert(s, &s->noise, p->tachometer_gain * turning, p->tachometer_noise);
     double fsr = convert(s, &s->noise, felt, p->fsr_noise);
 
-    // the others draw from noise of their own, in any order
-    return (sensor_reading){.encoder = s->counted,
-                            .tachometer = tachometer / p->tachometer_gain,
-                            .force_reading = read_force(s, fsr),
-                            .piezo_force =
-                                p->piezo ? read_piezo(s, now->force) : (double)NAN,
-                            .film = p->film ? read_film(s, now->bending) : (double)NAN,
-                            .accelerometer = p->accelerometer ? read_accelerometer(s, now)
-                                                              : (double)NAN};
+    sensor_reading reading = {.encoder = s->counted,
+                              .tachometer = tachometer / p->tachometer_gain,
+                              .force_reading = read_force(s, fsr),
+                              .piezo_force = (double)NAN,
+                              .film = (double)NAN,
+                              .accelerometer = (double)NAN};
+
+    // the sensors that need not be there draw from noise of their own
+    if (p->piezo) {
+        reading.piezo_force = read_piezo(s, now->force);
+    }
+    if (p->film) {
+        reading.film = read_film(s, now->bending);
+    }
+    if (p->accelerometer) {
+        reading.accelerometer = read_accelerometer(s, now);
+    }
+    return reading;
 }

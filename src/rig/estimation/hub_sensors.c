@@ -38,6 +38,8 @@ controller_input hub_sensors_read(hub_sensors *s, const controller_input *in,
 {
     controller_input read = *in;
     s->moves = fabs(in->tachometer) > MOVES;
+
+    // how far the hub has turned by the tachometer, whose noise the last readings show
     s->turned += (s->rates[0] + in->tachometer) / 2 * period;
     s->observed += period;
     follow_noise(s, in->tachometer, period);

@@ -10,19 +10,15 @@ void touch_forecast_tell(touch_forecast *t, const parameters *told,
                          const controller_setup *setup)
 {
     const double l = setup->link_length;
-    const bool spring = isfinite(setup->hub_spring);
     parameters *p = &t->arm;
 
     // the arm in two links, with the numbers that the controller is told
     *p = *told;
     p->arm.model = ARM_CORRECTED;
     p->arm.links = 2;
-    if (spring) {
+    p->arm.hub_joint = HUB_RIGID;
+    if (isfinite(setup->hub_spring)) {
         p->arm.hub_joint = HUB_SPRING;
-    } else {
-        p->arm.hub_joint = HUB_RIGID;
-    }
-    if (spring) {
         p->arm.k1 = setup->hub_spring;
     }
     p->arm.k2 = setup->k2;
@@ -40,10 +36,13 @@ void touch_forecast_tell(touch_forecast *t, const parameters *told,
     t->decay = setup->damping_ratio * t->frequency;
 }
 
-// Takes the bend to a sample h [s] after the last one, the hub then turning at w [rad/s].
+// Takes the bend to a sample h [s] after the last one, the hub then turning at w [rad/s]:
+// a rotation in the phase plane about the bend in balance with the hub's acceleration,
+// -lag w'/f^2, damped.
 static void follow_bend(touch_forecast *t, double h, double w)
 {
-    const double f = t->frequency, held = t->lag * (w - t->hub_velocity) / (h * f * f);
+    const double f = t->frequency;
+    const double held = t->lag * (w - t->hub_velocity) / (h * f * f);
     const double left = plain_exp(-t->decay * h), from = t->bend + held;
     double s, c;
     inline_sincos(f * h, &s, &c);

@@ -107,12 +107,14 @@ static void model_flight(optimal_memory *m)
 // M x'' = torque + T - D x' - 4 k2 x, over a time h.
 static void model_contact(optimal_memory *m, double h, sampled_model *model)
 {
-    double k = m->stiffness / m->inertia, d = m->rig.hub_damping / m->inertia;
-    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {[PRESSED_ANGLE] = {[PRESSED_RATE] =
-                                                                              1},
-                                                       [PRESSED_RATE] = {-k, -d, k,
-                                                                         1 / m->inertia}};
+    const double k = m->stiffness / m->inertia, d = m->rig.hub_damping / m->inertia;
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}};
     double input[ESTIMATOR_STATES] = {[PRESSED_RATE] = 1 / m->inertia};
+    rate[PRESSED_ANGLE][PRESSED_RATE] = 1;
+    rate[PRESSED_RATE][PRESSED_ANGLE] = -k;
+    rate[PRESSED_RATE][PRESSED_RATE] = -d;
+    rate[PRESSED_RATE][PRESSED_WALL] = k;
+    rate[PRESSED_RATE][PRESSED_TORQUE] = 1 / m->inertia;
     sampled_model_init(model, 4, rate, input, h);
 }
 
@@ -137,10 +139,9 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     m->stiffness = 4 * setup->k2;
     m->spring_force = 2 * setup->k2 / l;
     m->mass_force = (quarter - setup->link_inertia) / l;
+    m->divergence = HUGE_VAL;
     if (m->mass_force > 0) {
         m->divergence = sqrt(m->spring_force / m->mass_force);
-    } else {
-        m->divergence = HUGE_VAL;
     }
     if (!(setup->torque_per_volt > 0) || !(m->inertia > 0)) {
         return "it needs a motor that turns the hub and an arm with inertia";
@@ -150,18 +151,21 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     model_contact(m, setup->period, &m->contact);
     model_contact(m, setup->delay, &m->during_delay);
 
-    // force of deviations from rest: x and its rate, and a command's immediate effect
+    // deviations of x and its rate from rest under a command
     sampled_model plant = {.n = 2};
     for (int i = 0; i < 2; i++) {
         memcpy(plant.a[i], m->contact.a[i], 2 * sizeof(double));
         plant.b[i] = m->contact.b[i] * setup->torque_per_volt;
     }
-    double per_torque = m->mass_force / m->inertia;
-    double output[2] = {m->spring_force + per_torque * m->stiffness,
-                        per_torque * setup->hub_damping};
+
+    // their force, f = 4 k2 x - mu x'', and the command's effect on it at once
+    const double per_torque = m->mass_force / m->inertia;
+    const double output[2] = {m->spring_force + per_torque * m->stiffness,
+                              per_torque * setup->hub_damping};
+    const double at_once = -per_torque * setup->torque_per_volt;
     quadratic_cost cost = {.effort = EFFORT,
                            .growth = plain_exp(URGENCY * setup->period)};
-    quadratic_cost_add(&cost, 2, output, -per_torque * setup->torque_per_volt, 1);
+    quadratic_cost_add(&cost, 2, output, at_once, 1);
     if (!quadratic_gain(&plant, &cost, m->gain)) {
         return "the Riccati equation of its gains has no stabilising solution";
     }
@@ -350,21 +354,22 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
 // force a little above 4 k2 times it stops the hub, at ever faster a rate.
 static double limit_command(optimal_memory *m, const double *z, double command)
 {
-    double x = z[PRESSED_ANGLE] - z[PRESSED_WALL], limit = m->rig.voltage_limit;
-    double stopping = m->spring_force * (x + z[PRESSED_RATE] / m->divergence);
-    double excess = stopping - m->force,
-           least = fmin(0.1 + 0.05 * m->force, 0.5 * m->force);
-    if (excess > 0) {
+    // what stopping takes may raise the ceiling
+    const double x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
+    const double stopping = m->spring_force * (x + z[PRESSED_RATE] / m->divergence);
+    if (stopping - m->force > 0) {
         m->ceiling = fmax(m->ceiling, braking_force(m, stopping));
     }
 
     // the force at once falls by per_volt for each volt: braking presses
-    double per_volt = m->mass_force / m->inertia * m->rig.torque_per_volt;
-    double force = contact_force(m, z, m->rig.torque_per_volt * command);
-    double wanted = fmax(least, fmin(force, m->ceiling));
+    const double per_volt = m->mass_force / m->inertia * m->rig.torque_per_volt;
+    const double force = contact_force(m, z, m->rig.torque_per_volt * command);
+    const double least = fmin(0.1 + 0.05 * m->force, 0.5 * m->force);
+    const double wanted = fmax(least, fmin(force, m->ceiling));
     if (per_volt > 0) {
         command += (force - wanted) / per_volt;
     }
+    const double limit = m->rig.voltage_limit;
     return fmax(-limit, fmin(command, limit));
 }
 
@@ -422,7 +427,7 @@ static double seek_wall(const optimal_memory *m)
            m->gain[1] * z[FREE_FIRST_RATE];
 }
 
-static double press(optimal_memory *m, const controller_input *in)
+static double state_feedback_press(optimal_memory *m, const controller_input *in)
 {
     // the state when the command takes effect
     estimator ahead = m->e;
@@ -431,51 +436,54 @@ static double press(optimal_memory *m, const controller_input *in)
                         m->rig.torque_per_volt * in->voltage);
     }
 
+    // how far x is off the aim, which is a little short of the force
+    const double *z = ahead.z, velocity = z[PRESSED_RATE];
+    const double shortfall = fmin(SHORTFALL * m->force, MOST_SHORTFALL);
+    const double aim = m->force * (1 - shortfall) / m->spring_force;
+    const double x = z[PRESSED_ANGLE] - z[PRESSED_WALL], error = aim - x;
+
     // at rest within the tolerance the force is held
-    const double *z = ahead.z;
-    double shortfall = fmin(SHORTFALL * m->force, MOST_SHORTFALL);
-    double aim = m->force * (1 - shortfall) / m->spring_force,
-           x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
-    double error = aim - x, tolerance = 0.01 * m->force + 0.005; // [N]
-    double velocity = z[PRESSED_RATE];
-    bool rests = fabs(velocity) < 0.02;
-    bool wanted = in->wanted_mode == PRESS;
-    if (!wanted && !m->wanted.changed && rests &&
+    const double tolerance = 0.01 * m->force + 0.005; // [N]
+    const bool rests = fabs(velocity) < 0.02;
+    const bool locked = in->wanted_mode == PRESS;
+    if (!locked && !m->wanted.changed && rests &&
         fabs(error) * m->spring_force < tolerance) {
         begin_hold(m, x);
         return m->hold_command;
     }
 
-    // what keeps the aim, friction included, and the feedback round it
+    // friction against the motion, or the one that is to begin
     const double aim_rate = m->wanted.seen_rate / m->spring_force;
     double against;
     if (rests) {
-        against = copysign(m->rig.stiction, aim_rate != 0 ? aim_rate : error);
+        const double way = aim_rate != 0 ? aim_rate : error;
+        against = copysign(m->rig.stiction, way);
     } else {
         against = friction(m, velocity, 0);
     }
-    double steady = (m->stiffness * aim + m->rig.hub_damping * aim_rate -
-                     z[PRESSED_TORQUE] + against) /
-                    m->rig.torque_per_volt;
-    return limit_command(m, z,
-                         steady + m->gain[0] * error +
-                             m->gain[1] * (aim_rate - velocity));
+
+    // what keeps the aim, and the feedback round it
+    const double steady = (m->stiffness * aim + m->rig.hub_damping * aim_rate -
+                           z[PRESSED_TORQUE] + against) /
+                          m->rig.torque_per_volt;
+    const double command =
+        steady + m->gain[0] * error + m->gain[1] * (aim_rate - velocity);
+    return limit_command(m, z, command);
 }
 
 // Contact is lost when the sensor has felt nothing for two samples.
 static bool contact_is_lost(optimal_memory *m, const controller_input *in)
 {
     const int most = 2;
+    m->readings_without_force++;
     if (in->force > m->threshold) {
         m->readings_without_force = 0;
-    } else {
-        m->readings_without_force = m->readings_without_force + 1;
     }
-    const bool lost = m->readings_without_force >= most;
-    if (lost) {
-        m->readings_without_force = 0;
+    if (m->readings_without_force < most) {
+        return false;
     }
-    return lost;
+    m->readings_without_force = 0;
+    return true;
 }
 
 // Updates the observer; the law itself decides where the flight ends.
@@ -502,6 +510,33 @@ static void observe(optimal_memory *m, const controller_input *in)
     }
 }
 
+// What is recorded beside the command: where the hub should be in contact, and what the
+// force is taken to be.
+static void report_estimate(const optimal_memory *m, const controller_input *in,
+                            controller_output *out)
+{
+    out->mode = m->mode;
+    if (m->mode == APPROACH) {
+        out->calculated_force = 0;
+        if (m->force_limit != HUGE_VAL) {
+            out->calculated_force = force_of_touch(m);
+        }
+        return;
+    }
+
+    const double wall = m->flies ? m->rig.wall_angle : m->e.z[PRESSED_WALL];
+    out->desired_angle = wall + m->force / m->spring_force;
+    out->desired_velocity = 0;
+    if (m->mode == HOLD) {
+        out->calculated_force = m->held_force;
+    } else if (m->flies) {
+        out->calculated_force = 0;
+    } else {
+        out->calculated_force =
+            contact_force(m, m->e.z, m->rig.torque_per_volt * in->voltage);
+    }
+}
+
 // Observer, mode and command of one sample.
 static void state_feedback_sample(void *memory, const controller_input *in,
                                   controller_output *out)
@@ -520,32 +555,10 @@ static void state_feedback_sample(void *memory, const controller_input *in,
     } else if (m->flies) {
         out->command = seek_wall(m);
     } else {
-        out->command = press(m, in);
+        out->command = state_feedback_press(m, in);
     }
-
     set_point_follow(&m->wanted, m->rig.period);
-    out->mode = m->mode;
-    if (m->mode == APPROACH) {
-        if (m->force_limit == HUGE_VAL) {
-            out->calculated_force = 0;
-        } else {
-            out->calculated_force = force_of_touch(m);
-        }
-        return;
-    }
-
-    // in contact: where the hub should be, and what the force is taken to be
-    double wall = m->flies ? m->rig.wall_angle : m->e.z[PRESSED_WALL];
-    out->desired_angle = wall + m->force / m->spring_force;
-    out->desired_velocity = 0;
-    if (m->mode == HOLD) {
-        out->calculated_force = m->held_force;
-    } else if (m->flies) {
-        out->calculated_force = 0;
-    } else {
-        out->calculated_force =
-            contact_force(m, m->e.z, m->rig.torque_per_volt * in->voltage);
-    }
+    report_estimate(m, in, out);
 }
 
 // --- optimal ---
