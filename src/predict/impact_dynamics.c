@@ -347,13 +347,18 @@ static status predict_by_momentum(const parameters *p, const three_body_state *s
         out->impulse *= 1 + e;
         return STATUS_OK;
     }
+
+    // delay and force of the motion that follows; in the closed form the hub jumps as the
+    // first link does
     integrate_motion(&g, p, &t, s, after);
     if (t.rigid_hub || closed_form) {
-        solve_quadratic(&g, t.rigid_hub, s->velocity[0] + after[1] - s->velocity[1], out);
+        const double hub_after = s->velocity[0] + after[1] - s->velocity[1];
+        solve_quadratic(&g, t.rigid_hub, hub_after, out);
     } else {
         TRY(solve_with_hub_spring(&g, s->velocity[0], &out->delay, &out->force, f));
     }
 
+    // it holds where there is a pulse and the touch lasts
     out->holds = out->impulse >= 0 && out->force > 0 && out->delay > 0;
     if (p->arm.model != ARM_PRINTED) {
         out->holds = out->holds && two_link_first_force(&t, p, s, after) >= 0;

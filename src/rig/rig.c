@@ -312,14 +312,19 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
     *changed = false;
     const bool samples = !instant_after(r->sample_time, time);
 
-    // with jitter a sample may come before the command of one long before: that goes out
-    // then
-    apply_commands(r, time, samples ? r->pending_most : CONTROL_MOST_DELAY + 1, changed);
+    // commands that are due go out; with jitter a sample may come before the command of
+    // one long before, which then goes out, too
+    int most = CONTROL_MOST_DELAY + 1;
+    if (samples) {
+        most = r->pending_most;
+    }
+    apply_commands(r, time, most, changed);
 
     status s = STATUS_OK;
     if (samples) {
         s = take_sample(r, time, now, f);
     }
+
     // without a delay the new command takes effect at once
     if (s == STATUS_OK) {
         apply_commands(r, time, CONTROL_MOST_DELAY + 1, changed);

@@ -124,6 +124,29 @@ static status contact_modes(const arm *a, double wall_stiffness, const chain_mod
     return STATUS_OK;
 }
 
+// What a touch keeps of the motion, X = x_c'M x_f, and the inertia of the rotation, r'M r
+// with r = (1 ... 1).
+static void project_touch(reduced_arm *r, int n, const chain_modes *work)
+{
+    r->inertia = 0;
+    for (int i = 0; i < n * n; i++) {
+        r->inertia += work->mass[i];
+    }
+
+    for (int c = 0; c < r->contact.count; c++) {
+        for (int f = 0; f < r->free.count; f++) {
+            r->touch[c][f] = 0;
+            for (int i = 0; i < n; i++) {
+                for (int j = 0; j < n; j++) {
+                    r->touch[c][f] += work->contact[c * n + i] * work->mass[i * n + j] *
+                                      work->free[f * n + j];
+                }
+            }
+        }
+    }
+}
+
+// The modes of a chain that stay, free and in contact. NULL, or why it has none.
 static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *setup,
                           double wall_stiffness, const chain_modes *work)
 {
@@ -152,24 +175,7 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
         return "the arm it believes in does not bend";
     }
 
-    // inertia of the rotation
-    r->inertia = 0;
-    for (int i = 0; i < n * n; i++) {
-        r->inertia += work->mass[i];
-    }
-
-    // the projection of a touch, x_c'M x_f
-    for (int c = 0; c < r->contact.count; c++) {
-        for (int f = 0; f < r->free.count; f++) {
-            r->touch[c][f] = 0;
-            for (int i = 0; i < n; i++) {
-                for (int j = 0; j < n; j++) {
-                    r->touch[c][f] += work->contact[c * n + i] * work->mass[i * n + j] *
-                                      work->free[f * n + j];
-                }
-            }
-        }
-    }
+    project_touch(r, n, work);
     return NULL;
 }
 

@@ -52,9 +52,10 @@ static double share_changed(const observer_design *d, double t)
 
 double smooth_approach_follow(smooth_approach *p, const observer_design *d)
 {
-    // the mean over the period
+    // the torque of the changes of speed under way, as its mean over the period
+    const int changes = p->slows ? 2 : 1;
     double torque = 0;
-    for (int i = 0; i < 1 + p->slows; i++) {
+    for (int i = 0; i < changes; i++) {
         double before = share_changed(d, p->changing[i]);
         p->changing[i] += p->period;
         torque += (share_changed(d, p->changing[i]) - before) * p->change[i];

@@ -391,9 +391,10 @@ static void change_mode(optimal_memory *m, const controller_input *in)
     } else if (m->mode == PRESS && !m->flies) {
         m->e.z[PRESSED_ANGLE] = in->encoder; // nothing was observed while it held
         m->e.z[PRESSED_RATE] = in->tachometer;
+    } else if (m->mode == HOLD && m->flies) {
+        begin_hold(m, (z[FREE_FIRST] - z[FREE_LAST]) / 2);
     } else if (m->mode == HOLD) {
-        begin_hold(m, m->flies ? (z[FREE_FIRST] - z[FREE_LAST]) / 2
-                               : z[PRESSED_ANGLE] - z[PRESSED_WALL]);
+        begin_hold(m, z[PRESSED_ANGLE] - z[PRESSED_WALL]);
     }
 }
 
