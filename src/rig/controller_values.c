@@ -77,15 +77,17 @@ static status read_setting(const controller *law, const setting *s, double *valu
                          law->name, s->name, did_you_mean(hint, near, ""));
     }
 
-    controller_parameter wanted = controller_parameter_at(law, index);
+    // a number within the range, which is said with its unit
+    const controller_parameter wanted = controller_parameter_at(law, index);
+    const char *unit = wanted.unit != NULL ? wanted.unit : "";
+    const char *space = unit[0] != '\0' ? " " : "";
     double value = 0;
     FAULT_IF(!setting_number(s, &value) ||
                  !(value >= wanted.minimum && value <= wanted.maximum),
              f, STATUS_BAD_SCENARIO,
              "control.settings: '%.*s' is wrong, expected %s=NUMBER from %g to %g%s%s",
-             (int)s->length, s->word, wanted.name, wanted.minimum, wanted.maximum,
-             wanted.unit != NULL && wanted.unit[0] ? " " : "",
-             wanted.unit != NULL ? wanted.unit : "");
+             (int)s->length, s->word, wanted.name, wanted.minimum, wanted.maximum, space,
+             unit);
     values[index] = value;
     return STATUS_OK;
 }

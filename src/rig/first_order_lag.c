@@ -146,8 +146,8 @@ int lag_turns(const first_order_lag *y, const lag_input *input,
     // what begins or ends without a lead has that of its rate there
     const double rate = lead_rate_at(&p, 0), last_rate = lead_rate_at(&p, 1);
     const double lead = lead_at(&p, 0), last_lead = lead_at(&p, 1);
-    const double first = lead != 0 ? lead : rate,
-                 last = last_lead != 0 ? last_lead : -last_rate;
+    const double first = lead != 0 ? lead : rate;
+    const double last = last_lead != 0 ? last_lead : -last_rate;
     if (first * last < 0) {
         turns[0] = output_at(&p, zero_between(&p, lead_at, 0, 1, first));
         return 1;

@@ -133,9 +133,12 @@ converter converter_of(int bits, double range);
 // The nearest value that it has; of a continuous one the value itself within the range.
 static inline double converter_value(const converter *c, double value)
 {
-    const double within = value < -c->range  ? -c->range
-                          : value < c->range ? value
-                                             : c->range;
+    double within = c->range;
+    if (value < -c->range) {
+        within = -c->range;
+    } else if (value < c->range) {
+        within = value;
+    }
     if (c->step == 0) {
         return within;
     }

@@ -89,12 +89,14 @@ static inline void multiply_states(int rows, int inner, int columns, double *out
                                    const double *a, bool transpose_a, const double *b,
                                    bool transpose_b)
 {
+    // from one row, and from one column, to the next
+    const int a_row = transpose_a ? 1 : N, a_column = transpose_a ? N : 1;
+    const int b_row = transpose_b ? 1 : N, b_column = transpose_b ? N : 1;
     for (int i = 0; i < rows; i++) {
         for (int j = 0; j < columns; j++) {
             double sum = 0;
             for (int k = 0; k < inner; k++) {
-                sum += (transpose_a ? a[k * N + i] : a[i * N + k]) *
-                       (transpose_b ? b[j * N + k] : b[k * N + j]);
+                sum += a[i * a_row + k * a_column] * b[k * b_row + j * b_column];
             }
             out[i * N + j] = sum;
         }
