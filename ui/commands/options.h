@@ -9,27 +9,25 @@
 
 // What an option takes, how it is checked, and the type of its place in struct arguments.
 typedef enum option_type {
-    OPTION_FLAG,   // nothing; bool
-    OPTION_TEXT,   // any text; const char *
-    OPTION_WORD,   // as OPTION_TEXT, but its `value` lists words to offer for completion;
-                   // const char
-                   // *
-    OPTION_CHOICE, // one of the words of `value`, "a|b|c"; const char *
-    OPTION_FILE,   // a file that is read; const char *
-    OPTION_RESULT, // a file that is written whole, "-": the standard output; const char *
+    OPTION_FLAG,     // nothing; bool
+    OPTION_TEXT,     // any text; const char *
+    OPTION_WORD,     // the same, but `value` lists words to offer; const char *
+    OPTION_CHOICE,   // one of the words of `value`, "a|b|c"; const char *
+    OPTION_FILE,     // a file that is read; const char *
+    OPTION_RESULT,   // a file that is written whole, "-": standard output; const char *
     OPTION_PICTURE,  // a file .png, .pdf or .svg that is written whole; const char *
-    OPTION_PLACE,    // a file or folder that the command itself checks and writes; const
-                     // char *
+    OPTION_PLACE,    // a file or folder that the command checks and writes; const char *
     OPTION_SCENARIO, // a scenario's name or file; const char *
     OPTION_QUANTITY, // key of a summary's quantity; const char *
     OPTION_NUMBER,   // from `low` to `high`; double
     OPTION_LENGTH,   // the same with a unit, "85mm", "8.5cm", "3.35in"; double [mm]
     OPTION_WHOLE,    // a whole number from `low` to `high`; uint64_t
     OPTION_SIZE,     // WIDTHxHEIGHT, each from 1 to `high`; grid_size
-    OPTION_NUMBERS,  // may be repeated; option_list, in the order of the command line
-    OPTION_FILES,    // as OPTION_FILE, may be repeated; option_list
-    OPTION_PARAMETERS, // PATH=..., may be repeated; option_list, in the order of the
-                       // command line
+
+    // these may be repeated; option_list, in the order of the command line
+    OPTION_NUMBERS,    // as OPTION_NUMBER
+    OPTION_FILES,      // as OPTION_FILE
+    OPTION_PARAMETERS, // PATH=...
 } option_type;
 
 // The values of an option that may be repeated.
@@ -62,8 +60,9 @@ typedef struct option_row {
     double low, high;  // range of numbers [unit]; high of OPTION_SIZE
     double initial;    // of OPTION_NUMBER, if it is not given
     const char *unit;  // of numbers and sizes, NULL if none
-    bool (*replaces)(
-        const char *path); // what else than an empty file a result may replace, or NULL
+
+    // whether a result may replace the file at `path`, which is not empty; NULL: any
+    bool (*replaces)(const char *path);
 } option_row;
 
 typedef struct option_table {

@@ -14,32 +14,36 @@ typedef struct exam_found {
     const exam_rows *before; // NULL: none were given
 } exam_found;
 
-static json_t *found_json(const void *found)
+// The judgement of each law, as JSON.
+static json_t *exam_json(const void *found)
 {
     const exam_found *e = found;
     return law_exam_json(e->exam, e->before);
 }
 
-static void print_found(const void *found)
+// The judgement of each law, as text.
+static void print_exam(const void *found)
 {
     const exam_found *e = found;
     law_exam_text(stdout, e->exam, e->before);
 }
 
-static void write_cases(FILE *stream, const void *found)
+// A row for each run of each law.
+static void write_exam_csv(FILE *stream, const void *found)
 {
     const exam_found *e = found;
     law_exam_csv(stream, e->exam);
 }
 
-static void show_share_done(const law_exam *e)
+// How far the exam is, on the line of the one before.
+static void show_exam_progress(const law_exam *e)
 {
     fprintf(stderr, "\r%zu of %zu runs ", e->done, e->runs);
     fflush(stderr);
 }
 
-// What draws from a set has no use here.
-static int check_options(const arguments *a)
+// Refuses options that are of draws from a set. Returns the exit status.
+static int check_exam_options(const arguments *a)
 {
     const struct {
         const char *name;
@@ -61,19 +65,23 @@ static int check_options(const arguments *a)
     return EXIT_DONE;
 }
 
-// The commands of --force, or the scenario's own.
+// Reads the commands of --force, or the scenario's own. Returns the exit status.
 static int read_forces(const arguments *a, const scenario *s, exam_request *asked)
 {
     asked->force_count = a->forces.count;
     if (asked->force_count > EXAM_MOST_FORCES) {
         return complain("--force can be given %d times at most", EXAM_MOST_FORCES);
     }
+
+    // each of them
     for (int k = 0; k < asked->force_count; k++) {
         asked->forces[k] = a->forces.numbers[k];
         if (!(asked->forces[k] > 0)) {
             return complain("--force %g: expected a force above 0 N", asked->forces[k]);
         }
     }
+
+    // none is given
     if (asked->force_count == 0) {
         asked->forces[asked->force_count++] = s->parameters.control.force;
     }
@@ -85,7 +93,9 @@ static int read_forces(const arguments *a, const scenario *s, exam_request *aske
 
 int robust_exam(const arguments *a, const scenario *s, const int *laws, int law_count)
 {
-    static const command_results written = {found_json, print_found, .csv = write_cases};
+    static const command_results results = {.json = exam_json,
+                                            .text = print_exam,
+                                            .csv = write_exam_csv};
     exam_request asked = {.base = s,
                           .law_count = law_count,
                           .cases = (size_t)a->draw,
@@ -94,7 +104,7 @@ int robust_exam(const arguments *a, const scenario *s, const int *laws, int law_
         return complain("--laws: --draw judges at most %d laws", EXAM_MOST_LAWS);
     }
     memcpy(asked.laws, laws, (size_t)law_count * sizeof *laws);
-    int code = check_options(a);
+    int code = check_exam_options(a);
     if (code == EXIT_DONE) {
         code = read_forces(a, s, &asked);
     }
@@ -104,10 +114,12 @@ int robust_exam(const arguments *a, const scenario *s, const int *laws, int law_
 
     // the runs
     const sweep_options many = many_runs_begin(a, "");
-    const exam_options options = {.jobs = many.jobs,
-                                  .stop = many.stop,
-                                  .abandon = many.abandon,
-                                  .report = many.report != NULL ? show_share_done : NULL};
+    exam_options options = {.jobs = many.jobs,
+                            .stop = many.stop,
+                            .abandon = many.abandon};
+    if (many.report != NULL) {
+        options.report = show_exam_progress;
+    }
     SCOPED(law_exam_finish) law_exam e;
     fault f = {.path = ""};
     const status ran = law_exam_run(&e, &asked, &options, &f);
@@ -125,5 +137,5 @@ int robust_exam(const arguments *a, const scenario *s, const int *laws, int law_
         }
         found.before = &before;
     }
-    return write_results(a, &written, &found, true);
+    return write_results(a, &results, &found, true);
 }

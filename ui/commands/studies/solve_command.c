@@ -45,7 +45,7 @@ static json_t *solution_json(const void *found)
 }
 
 // A value with its unit, as text to be freed with g_free.
-static char *value_with_unit(const char *value, const char *unit)
+static char *text_with_unit(const char *value, const char *unit)
 {
     return g_strconcat(value, blank_before(unit), unit, NULL);
 }
@@ -68,9 +68,9 @@ static void print_question(const question *q)
     number_format_short(bound, c->bound);
     number_format_short(low, fmin(q->axis.low, q->axis.high));
     number_format_short(high, fmax(q->axis.low, q->axis.high));
-    g_autofree char *bound_text = value_with_unit(bound, quantity->unit);
+    g_autofree char *bound_text = text_with_unit(bound, quantity->unit);
     g_autofree char *high_text =
-        value_with_unit(high, sweep_axis_parameter(&q->axis)->unit);
+        text_with_unit(high, sweep_axis_parameter(&q->axis)->unit);
     say("%s %s %s for %s from %s to %s, %d runs\n", quantity->label, relation, bound_text,
         q->axis.name, low, high_text, q->found.done);
 }
@@ -84,8 +84,8 @@ static void print_limit(const question *q, const solve_limit *limit)
     char value[64], reached[64];
     decimal_print(value, sizeof value, "%.7g", limit->value);
     decimal_print(reached, sizeof reached, "%.7g", limit->reached);
-    g_autofree char *value_text = value_with_unit(value, unit);
-    g_autofree char *reached_text = value_with_unit(reached, quantity->unit);
+    g_autofree char *value_text = text_with_unit(value, unit);
+    g_autofree char *reached_text = text_with_unit(reached, quantity->unit);
 
     // the limit, and what is known of its surroundings
     say("\n  %s %s = %s, where the %s is %s", side, q->axis.name, value_text,
