@@ -102,14 +102,14 @@ static void draw_shape_key(sketch *s, const arm_shapes *of)
 }
 
 // The name of a link's length, `left` and `up` from its middle.
-static void name_length(sketch *s, point from, point to, double left, double up)
+static void label_length(sketch *s, point from, point to, double left, double up)
 {
     const point middle = {(from.x + to.x) / 2, (from.y + to.y) / 2};
     sketch_label(s, shifted(middle, -left, -up), (anchor){1, 1}, "<i>l</i>");
 }
 
 // The arm at two successive steps over the reference line.
-static void draw_contact(sketch *s, const diagram *d)
+static void draw_contact_diagram(sketch *s, const diagram *d)
 {
     const arm_shapes *of = &d->shapes;
     const view v = {s->left + 34, s->bottom - 30, 255, CONTACT_ACROSS};
@@ -127,8 +127,8 @@ static void draw_contact(sketch *s, const diagram *d)
                        "<i>θ</i><sub>2</sub>");
     diagram_link_angle(s, one.joint, 62, page_direction(one.joint, one.end),
                        "<i>θ</i><sub>3</sub>");
-    name_length(s, one.hub, one.joint, 10, 6);
-    name_length(s, one.joint, one.end, 8, 8);
+    label_length(s, one.hub, one.joint, 10, 6);
+    label_length(s, one.joint, one.end, 8, 8);
     draw_contact_force(s, contact, page_direction(one.joint, contact), "<i>f</i>",
                        of->one.force);
     draw_shape_key(s, of);
@@ -162,7 +162,7 @@ static void add_shape_values(diagram *d, const arm_shape *a)
 status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d =
-        diagram_create(order, "method.step=0.01", 232, draw_contact, f);
+        diagram_create(order, "method.step=0.01", 232, draw_contact_diagram, f);
     if (d == NULL) {
         return f->code;
     }

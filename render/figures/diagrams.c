@@ -30,7 +30,7 @@ static void draw_dimension(sketch *s, point from, point to, double away, anchor 
 }
 
 // The hub with its own direction, which the spring k1 parts from the first link.
-static void draw_hub(sketch *s, const view *v, point hub)
+static void draw_hub_direction(sketch *s, const view *v, point hub)
 {
     const double direction = -35 * DEGREE, radius = v->metre * HUB_RADIUS;
     const point rim = view_place(v, view_end((point){0, 0}, HUB_RADIUS, direction));
@@ -64,7 +64,7 @@ static void draw_links_diagram(sketch *s, const diagram *d)
     sketch_bar(s, joint, tip, LINK_THICKNESS);
     sketch_mass_point(s, centre_2);
     sketch_mass_point(s, centre_3);
-    draw_hub(s, &v, hub);
+    draw_hub_direction(s, &v, hub);
 
     // springs
     sketch_spiral(s, hub, 13, SLOT_BLUE);
@@ -131,7 +131,7 @@ static void draw_torque(sketch *s, point joint, double from, double to)
 }
 
 // A force at a joint.
-static void draw_force(sketch *s, point at, double right, double down)
+static void draw_force_arrow(sketch *s, point at, double right, double down)
 {
     sketch_arrow(s, at, shifted(at, right, down), SLOT_VERMILLION);
 }
@@ -159,9 +159,9 @@ static void draw_first_link(sketch *s, point from, point to)
     sketch_label(s, shifted(from, -10, -21), (anchor){0.5, 1}, "<i>τ</i><sub>1</sub>");
     draw_torque(s, to, -110, 60);
     sketch_label(s, shifted(to, 2, -16), (anchor){1, 1}, "<i>τ</i><sub>2</sub>");
-    draw_force(s, from, 8, 36);
+    draw_force_arrow(s, from, 8, 36);
     sketch_label(s, shifted(from, 12, 37), (anchor){0, 0.5}, "<i>f</i><sub>1</sub>");
-    draw_force(s, to, -8, 36);
+    draw_force_arrow(s, to, -8, 36);
     sketch_label(s, shifted(to, -12, 37), (anchor){1, 0.5}, "<i>f</i><sub>2</sub>");
     sketch_small(s, shifted(centre, 0, 9), (anchor){0.5, 0}, "body 2");
 }
@@ -175,7 +175,7 @@ static void draw_last_link(sketch *s, point from, point tip, double angle)
     sketch_mass_point(s, centre);
     draw_torque(s, from, 230, 110);
     sketch_label(s, shifted(from, 8, 18), (anchor){0.5, 0}, "\u2212<i>τ</i><sub>2</sub>");
-    draw_force(s, from, 8, -36);
+    draw_force_arrow(s, from, 8, -36);
     sketch_label(s, shifted(from, 12, -37), (anchor){0, 0.5},
                  "\u2212<i>f</i><sub>2</sub>");
 

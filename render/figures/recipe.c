@@ -233,7 +233,7 @@ static void add_signals(recipe *r, int panel, const recipe_source *s,
 }
 
 // One signal of one source less that of another, at the instants of the first.
-static void add_difference(recipe *r, int panel)
+static void add_recipe_difference(recipe *r, int panel)
 {
     const recipe_panel *from = &r->panels[panel];
     const recipe_source *of = &r->sources[from->of], *less = &r->sources[from->less];
@@ -322,7 +322,7 @@ static void describe_recipe_panel(recipe *r, int panel)
 
     // its curves
     if (from->compared) {
-        add_difference(r, panel);
+        add_recipe_difference(r, panel);
     }
     for (int i = 0; i < from->source_count; i++) {
         const recipe_source *s = &r->sources[from->sources[i]];

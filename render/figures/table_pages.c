@@ -82,7 +82,7 @@ static const struct {
 };
 
 // A parameter's value with six digits and its unit.
-static char *value_with_unit(const parameters *p, const parameter_info *info)
+static char *used_value(const parameters *p, const parameter_info *info)
 {
     g_autofree char *unit = text_unit(info->unit);
     const char *sign = unit;
@@ -115,7 +115,7 @@ status table_motor(const figure_order *order, artwork *out, fault *f)
     table_page *t = new_table(order, columns, column_count);
     for (size_t i = 0; i < G_N_ELEMENTS(constants); i++) {
         const parameter_info *info = &parameter_table[parameter_find(constants[i].path)];
-        g_autofree char *used = value_with_unit(&p, info);
+        g_autofree char *used = used_value(&p, info);
         g_autofree char *name = text_printf("%s: %s", info->path, info->description);
         if (above) {
             table_add_group(t, name);

@@ -98,7 +98,7 @@ static text_pattern verbose = {"rgb\\(" PER_CENT ", *" PER_CENT ", *" PER_CENT
 #define LINE_TAG "<path style=\"fill:none;"
 
 // A number without zeros at its end, and without a sign of zero.
-static void append_number(GString *out, double value, int decimals)
+static void append_short_number(GString *out, double value, int decimals)
 {
     g_autofree char *text = text_printf("%.*f", decimals, value);
     size_t length = strlen(text);
@@ -135,7 +135,7 @@ static gboolean shorten(const GMatchInfo *match, GString *out, gpointer of_lines
             decimals = 1;
         }
         g_autofree char *number = g_match_info_fetch(match, group);
-        append_number(out, decimal_parse(number, NULL), decimals);
+        append_short_number(out, decimal_parse(number, NULL), decimals);
     }
     return FALSE;
 }

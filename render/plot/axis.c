@@ -128,7 +128,9 @@ static void choose_decades(axis *a, int wanted)
 {
     static const int mantissas[] = {1, 2, 5};
     const axis_scale *s = &a->scale;
-    double decades = s->high - s->low;
+    const double decades = s->high - s->low;
+
+    // how many in a decade, or decades from one to the next
     int spacing = 1, per_decade = 1;
     if (3 * decades <= wanted || decades < FEW_DECADES) {
         per_decade = 3;
@@ -136,6 +138,7 @@ static void choose_decades(axis *a, int wanted)
     while (decades / spacing > wanted) {
         spacing++;
     }
+
     // one label alone gives no scale
     while (spacing > 1 && floor(s->high / spacing) - ceil(s->low / spacing) < 1) {
         spacing--;
@@ -157,6 +160,26 @@ static void choose_decades(axis *a, int wanted)
     }
 }
 
+static void take_given_ticks(axis *a)
+{
+    for (int i = 0; i < a->from->tick_count && i < TICKS_MOST; i++) {
+        a->at[a->count] = a->from->ticks[i].value;
+        a->text[a->count++] = a->from->ticks[i].label;
+    }
+}
+
+// Round values at even distances, with labels of their own.
+static void choose_even_ticks(axis *a, int wanted)
+{
+    ticks_between(&a->even, a->scale.low, a->scale.high, wanted);
+    a->count = a->even.count;
+    for (int i = 0; i < a->count; i++) {
+        a->at[i] = a->even.value[i];
+        tick_label(&a->even, i, a->own[i]);
+        a->text[i] = a->own[i];
+    }
+}
+
 // Ticks as the axis gives them, powers of ten, or round values.
 void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
 {
@@ -164,20 +187,11 @@ void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
     a->count = 0;
     a->even = (ticks){.minor = 1};
     if (from->ticks != NULL) {
-        for (int i = 0; i < a->from->tick_count && i < TICKS_MOST; i++) {
-            a->at[a->count] = a->from->ticks[i].value;
-            a->text[a->count++] = a->from->ticks[i].label;
-        }
+        take_given_ticks(a);
     } else if (a->scale.kind == SCALE_LOGARITHMIC) {
         choose_decades(a, wanted);
     } else {
-        ticks_between(&a->even, a->scale.low, a->scale.high, wanted);
-        a->count = a->even.count;
-        for (int i = 0; i < a->count; i++) {
-            a->at[i] = a->even.value[i];
-            tick_label(&a->even, i, a->own[i]);
-            a->text[i] = a->own[i];
-        }
+        choose_even_ticks(a, wanted);
     }
 }
 

@@ -29,7 +29,8 @@ void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c
     report_add_text(d->report, t.markup, t.size, place);
 }
 
-void put_label(drawing *d, const char *markup, double size, double x, double y, anchor at)
+void draw_markup(drawing *d, const char *markup, double size, double x, double y,
+                 anchor at)
 {
     draw_text(d, figure_text_of(d, markup, size), x, y, at, d->style.colours->text);
 }
@@ -153,8 +154,8 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
     for (int i = 0; look->x_labels && i < x->count; i++) {
         double at = plane_x(p, x->at[i]), half = width_of(d, x->text[i], look->size) / 2;
         if (x->even.count > 0 || at - half > taken + LABEL_GAP) {
-            put_label(d, x->text[i], look->size, at,
-                      bottom + TICK_LENGTH + TICK_SPACE - 1, (anchor){0.5, 0});
+            draw_markup(d, x->text[i], look->size, at,
+                        bottom + TICK_LENGTH + TICK_SPACE - 1, (anchor){0.5, 0});
             taken = at + half;
         }
     }
@@ -164,8 +165,8 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
     for (int i = 0; look->y_labels && i < y->count; i++) {
         double at = plane_y(p, y->at[i]);
         if (y->even.count > 0 || at < taken - look->size) {
-            put_label(d, y->text[i], look->size, p->box.x - TICK_LENGTH - TICK_SPACE, at,
-                      (anchor){1, 0.5});
+            draw_markup(d, y->text[i], look->size, p->box.x - TICK_LENGTH - TICK_SPACE,
+                        at, (anchor){1, 0.5});
             taken = at;
         }
     }

@@ -146,8 +146,8 @@ double width_of(const drawing *d, const char *markup, double size);
 double height_of(const drawing *d, text_block t);
 
 void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c);
-void put_label(drawing *d, const char *markup, double size, double x, double y,
-               anchor at);
+void draw_markup(drawing *d, const char *markup, double size, double x, double y,
+                 anchor at);
 // Draws t vertically, upwards; (x, y) is the middle of its upper edge, which is on the
 // left.
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c);

@@ -178,8 +178,8 @@ static void draw_panel_texts(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
     if (l->panel->heading != NULL) {
-        put_label(d, l->panel->heading, d->style.label, box->x + box->width / 2,
-                  box->y - 2, (anchor){0.5, 1});
+        draw_markup(d, l->panel->heading, d->style.label, box->x + box->width / 2,
+                    box->y - 2, (anchor){0.5, 1});
     }
     if (l->panel->remark != NULL) {
         draw_text(d, figure_text_of(d, l->panel->remark, d->style.label),
@@ -258,9 +258,9 @@ static void draw_all(drawing *d)
     // the horizontal axis once, below all columns
     g_autofree char *x_title = axis_title(&d->x);
     if (fig->x.label != NULL) {
-        put_label(d, x_title, d->style.label,
-                  (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
-                  (anchor){0.5, 0});
+        draw_markup(d, x_title, d->style.label,
+                    (d->column[0].left + d->column[d->columns - 1].right) / 2,
+                    d->x_label_y, (anchor){0.5, 0});
     }
     common_legend(d, true);
     for (int i = 0; i < fig->panel_count; i++) {

@@ -16,6 +16,19 @@ static double corner_cost(const placement *g, const figure_rect *r, double margi
     return 0.4 * across + 0.4 * down;
 }
 
+// The ink of everything above and left of each cell.
+static placement summed_ink(const placement *g)
+{
+    placement sums = *g;
+    for (int r = 1; r <= PLACEMENT_ROWS; r++) {
+        for (int c = 1; c <= PLACEMENT_COLUMNS; c++) {
+            sums.ink[r][c] +=
+                sums.ink[r - 1][c] + sums.ink[r][c - 1] - sums.ink[r - 1][c - 1];
+        }
+    }
+    return sums;
+}
+
 // The place of a width x height rectangle, `margin` from the box's edges, with the least
 // ink under it; among equal ones the nearest to a corner, preferring the right to the
 // left and the top to the bottom. Returns the ink under it (INFINITY if the box is too
@@ -23,41 +36,35 @@ static double corner_cost(const placement *g, const figure_rect *r, double margi
 static double placement_find(const placement *g, double width, double height,
                              double margin, figure_rect *found)
 {
-    placement sums = *g;
-    // sums over everything above and left of each cell
-    for (int r = 1; r <= PLACEMENT_ROWS; r++) {
-        for (int c = 1; c <= PLACEMENT_COLUMNS; c++) {
-            sums.ink[r][c] +=
-                sums.ink[r - 1][c] + sums.ink[r][c - 1] - sums.ink[r - 1][c - 1];
-        }
-    }
+    const placement sums = summed_ink(g);
 
-    // its size in whole cells, with the margin on both sides
-    double cell_width = g->box.width / PLACEMENT_COLUMNS;
-    double cell_height = g->box.height / PLACEMENT_ROWS;
-    int columns = (int)ceil((width + 2 * margin) / cell_width);
-    int rows = (int)ceil((height + 2 * margin) / cell_height);
+    // its size in whole cells, with the margin on both sides, and what is left of them
+    const double cell_width = g->box.width / PLACEMENT_COLUMNS;
+    const double cell_height = g->box.height / PLACEMENT_ROWS;
+    const int columns = (int)ceil((width + 2 * margin) / cell_width);
+    const int rows = (int)ceil((height + 2 * margin) / cell_height);
+    const double slack_x = columns * cell_width - width - 2 * margin;
+    const double slack_y = rows * cell_height - height - 2 * margin;
 
     // every place where it fits, with the ink within from the sums up to its corners
     double best = (double)INFINITY, best_ink = (double)INFINITY;
     for (int r = 0; r + rows <= PLACEMENT_ROWS; r++) {
         for (int c = 0; c + columns <= PLACEMENT_COLUMNS; c++) {
-            double ink = sums.ink[r + rows][c + columns] - sums.ink[r][c + columns] -
-                         sums.ink[r + rows][c] + sums.ink[r][c];
-            double slack_x = columns * cell_width - width - 2 * margin;
-            double slack_y = rows * cell_height - height - 2 * margin;
+            const double ink = sums.ink[r + rows][c + columns] -
+                               sums.ink[r][c + columns] - sums.ink[r + rows][c] +
+                               sums.ink[r][c];
 
-            // against the nearer edge what rounding to cells left over is not wasted
-            bool right = 2 * c > PLACEMENT_COLUMNS - columns,
-                 low = 2 * r > PLACEMENT_ROWS - rows;
+            // in the right and the lower half it stands against the far edge
             figure_rect place = {g->box.x + c * cell_width + margin,
                                  g->box.y + r * cell_height + margin, width, height};
-            if (right) {
+            if (2 * c > PLACEMENT_COLUMNS - columns) {
                 place.x += slack_x;
             }
-            if (low) {
+            if (2 * r > PLACEMENT_ROWS - rows) {
                 place.y += slack_y;
             }
+
+            // the least ink, among equal ones the nearest to a corner
             double cost = ink + corner_cost(g, &place, margin);
             if (cost < best) {
                 best = cost;

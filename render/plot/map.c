@@ -310,8 +310,8 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
 
         set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
         picture_line(d->cr, right, y, right + TICK_LENGTH, y);
-        put_label(d, l->colours.text[i], d->style.tick, right + TICK_LENGTH + TICK_SPACE,
-                  y, (anchor){0, 0.5});
+        draw_markup(d, l->colours.text[i], d->style.tick,
+                    right + TICK_LENGTH + TICK_SPACE, y, (anchor){0, 0.5});
     }
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
     cairo_rectangle(d->cr, bar.x, bar.y, bar.width, bar.height);

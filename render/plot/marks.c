@@ -443,7 +443,7 @@ void draw_points(drawing *d)
         }
         draw_dot(d, p, m->x, m->y);
         if (at_point(d, i)) {
-            put_label(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
+            draw_markup(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
         }
     }
 }
@@ -480,8 +480,8 @@ static double draw_flag(drawing *d, int index, double x, double shift)
     const bool before = m->onwards && d->mark_text_x[index] < x;
     const char *arrow = before ? ARROW : "";
     g_autofree char *label = g_strconcat(m->label, arrow, NULL);
-    put_label(d, label, d->style.small, d->mark_text_x[index] + shift, row,
-              (anchor){0, 0});
+    draw_markup(d, label, d->style.small, d->mark_text_x[index] + shift, row,
+                (anchor){0, 0});
     return row + 1;
 }
 
@@ -498,8 +498,8 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
         // its label inside the first panel or above it, where its line begins
         double x = plane_x(first, m->x), top = first->box.y + 1;
         if (i < MARKS_LABELLED && d->mark_row[i] >= 0 && d->marks_inside) {
-            put_label(d, m->label, d->style.small, d->mark_text_x[i] + shift,
-                      d->mark_text_y[i], (anchor){0, 0});
+            draw_markup(d, m->label, d->style.small, d->mark_text_x[i] + shift,
+                        d->mark_text_y[i], (anchor){0, 0});
             top = first->box.y;
         } else if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
             top = draw_flag(d, i, x, shift);
@@ -540,9 +540,9 @@ void draw_panel_levels(drawing *d, const panel_layout *l)
             const figure_rect *r = &l->level_place[i];
             const bool above = r->y < y - 1;
             if (above) {
-                put_label(d, level->label, d->style.small, r->x, y, (anchor){0, 1});
+                draw_markup(d, level->label, d->style.small, r->x, y, (anchor){0, 1});
             } else {
-                put_label(d, level->label, d->style.small, r->x, y + 0.5, (anchor){0});
+                draw_markup(d, level->label, d->style.small, r->x, y + 0.5, (anchor){0});
             }
         }
     }
@@ -560,6 +560,6 @@ void draw_notes(drawing *d, const panel_layout *l)
         // a dot and its text
         figure_rect place = note_place(d, l, n);
         draw_dot(d, &l->plane, n->x, n->y);
-        put_label(d, n->text, d->style.tick, place.x, place.y, (anchor){0, 0});
+        draw_markup(d, n->text, d->style.tick, place.x, place.y, (anchor){0, 0});
     }
 }

@@ -30,7 +30,7 @@ static double series_width(const figure_series *s)
 
 // The style of the series `index` among a panel's: its own, or the next that no earlier
 // one has.
-static line_style free_style(const figure_series *series, int index)
+static line_style untaken_style(const figure_series *series, int index)
 {
     // the orders in which styles give way keep the lines as plain as possible
     static const line_style others[] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT,
@@ -116,7 +116,7 @@ static series_pen pen_of(const drawing *d, const panel_layout *l, int index)
     series_pen pen = {palette_series(d->style.theme, s->colour, index), s->style,
                       series_width(s)};
     if (!s->rim) {
-        pen.style = free_style(l->panel->series, index);
+        pen.style = untaken_style(l->panel->series, index);
     }
     return pen;
 }

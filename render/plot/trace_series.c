@@ -326,33 +326,41 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     return code;
 }
 
+// Cuts a text off at the last of a character and returns what stood behind it; NULL if
+// there is none.
+static const char *cut_off(char *text, char last)
+{
+    char *at = strrchr(text, last);
+    if (at == NULL) {
+        return NULL;
+    }
+    *at = '\0';
+    return at + 1;
+}
+
+static bool read_shift(const char *text, double *shift)
+{
+    const char *rest;
+    return decimal_read(text, shift, &rest) && *rest == '\0';
+}
+
 // Divides "FILE.csv:COLUMN@SHIFT" into its parts.
 status overlay_read(trace *t, const char *text, const trace_panel *panels,
                     int panel_count, char **name, fault *f)
 {
     g_autofree char *path = g_strdup(text);
-    const char *column = NULL, *rest;
+    const char *column = NULL;
     double shift = 0;
+    trace_init(t, 0);
+    *name = NULL;
 
     // a file of that very name, or a shift and a column are cut off its end
     if (!g_file_test(text, G_FILE_TEST_EXISTS)) {
-        char *at = strrchr(path, '@');
-        if (at != NULL) {
-            *at = '\0';
-        }
-        if (at != NULL && (!decimal_read(at + 1, &shift, &rest) || *rest != '\0')) {
-            trace_init(t, 0);
-            *name = NULL;
-            return fault_set(
-                f, STATUS_BAD_ARGUMENT,
-                "'%s': '%s' is no shift in seconds, expected FILE.csv:COLUMN@SHIFT", text,
-                at + 1);
-        }
-        char *colon = strrchr(path, ':');
-        if (colon != NULL) {
-            *colon = '\0';
-            column = colon + 1;
-        }
+        const char *given = cut_off(path, '@');
+        FAULT_IF(given != NULL && !read_shift(given, &shift), f, STATUS_BAD_ARGUMENT,
+                 "'%s': '%s' is no shift in seconds, expected FILE.csv:COLUMN@SHIFT",
+                 text, given);
+        column = cut_off(path, ':');
     }
     return overlay_read_column(t, path, column, shift, panels, panel_count, name, f);
 }
