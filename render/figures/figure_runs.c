@@ -140,6 +140,20 @@ static status read_signal_panels(const char *text, trace_panel *panels, int *cou
 
 // ---- figures of runs
 
+// Measured data as a run without a scenario, with a name for the legend to be freed; NULL
+// as overlay_read fails.
+static opened_run *open_overlay(const char *overlay, const trace_panel *panels,
+                                int panel_count, char **name, fault *f)
+{
+    opened_run *measured = g_new0(opened_run, 1);
+    trace *rows = &measured->result.trace;
+    if (overlay_read(rows, overlay, panels, panel_count, name, f) != STATUS_OK) {
+        run_close(measured);
+        return NULL;
+    }
+    return measured;
+}
+
 // Chooses the panels, adds measured data as one more run, and draws them all.
 owned_figure *run_figure_create(const char *title, const trace_panel *panels,
                                 int panel_count, const trace_run *runs, int run_count,
@@ -160,6 +174,8 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels,
         }
         panels = asked;
     }
+
+    // room for all runs
     int curves = run_count;
     if (o->overlay != NULL) {
         curves++;
@@ -172,21 +188,20 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels,
 
     // measured data are one more run, of points
     g_autofree char *name = NULL;
-    opened_run *overlay = NULL;
+    opened_run *measured = NULL;
     memcpy(all, runs, (size_t)run_count * sizeof *runs);
     if (o->overlay != NULL) {
-        overlay = g_new0(opened_run, 1);
-        trace *rows = &overlay->result.trace;
-        if (overlay_read(rows, o->overlay, panels, panel_count, &name, f) != STATUS_OK) {
-            run_close(overlay);
+        measured = open_overlay(o->overlay, panels, panel_count, &name, f);
+        if (measured == NULL) {
             return NULL;
         }
-        all[run_count++] =
-            (trace_run){runs[0].scenario, &overlay->result, name, .points = true};
+        all[run_count] =
+            (trace_run){runs[0].scenario, &measured->result, name, .points = true};
     }
 
-    owned_figure *drawn = trace_figure_create(title, panels, panel_count, all, run_count);
-    owned_figure_own(drawn, overlay, run_close);
+    // the figure owns them
+    owned_figure *drawn = trace_figure_create(title, panels, panel_count, all, curves);
+    owned_figure_own(drawn, measured, run_close);
     figure_take_look(&drawn->figure, &o->look);
     figure_take_range(&drawn->figure, o);
     return drawn;

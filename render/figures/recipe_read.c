@@ -6,6 +6,16 @@
 
 // ---- panels
 
+// Whether a signal has another unit than those that a panel shows.
+static bool has_other_unit(const recipe_panel *p, int index)
+{
+    if (p->signal_count == 0) {
+        return false;
+    }
+    const int first = signal_find(p->signals[0]);
+    return strcmp(signal_table[first].unit, signal_table[index].unit) != 0;
+}
+
 // The recorded signals that a panel shows.
 static void read_panel_signals(recipe_context *c, const tree_node *node, void *into)
 {
@@ -28,9 +38,7 @@ static void read_panel_signals(recipe_context *c, const tree_node *node, void *i
         } else if (p->signal_count == TRACE_SIGNALS) {
             report_node(&c->reader, item, "a panel shows at most %d signals",
                         TRACE_SIGNALS);
-        } else if (p->signal_count > 0 &&
-                   strcmp(signal_table[signal_find(p->signals[0])].unit,
-                          signal_table[index].unit) != 0) {
+        } else if (has_other_unit(p, index)) {
             report_node(&c->reader, item,
                         "'%s' has another unit than '%s', expected a panel of its own",
                         name, p->signals[0]);

@@ -246,6 +246,8 @@ status table_algorithm(const figure_order *order, artwork *out, fault *f)
 
 // ---- 4.1 to 4.3: predictions
 
+#define NOMINAL_K2 4.92 // stiffness of the beam's spring [N m/rad]
+
 static const struct {
     const char *quantity, *label;
 } quantities[] = {
@@ -290,6 +292,24 @@ static void add_model(table_page *t, const table_row *row, double scale,
     add_values(t, "  difference (%)", difference, 100, "%.1f");
 }
 
+// A quantity as the thesis prints it, and by both models.
+static void add_predictions(table_page *t, const thesis_tables *all, const char *table,
+                            const char *quantity)
+{
+    const table_row *printed = computed_row(all, table, "printed", quantity);
+    const table_row *corrected = computed_row(all, table, "corrected", quantity);
+    if (g_str_has_prefix(quantity, "delay")) {
+        // in milliseconds, which the thesis rounds
+        add_values(t, "thesis", printed->printed, 1e3, "%.0f");
+        add_model(t, printed, 1e3, "%.1f");
+        add_model(t, corrected, 1e3, "%.1f");
+    } else {
+        add_values(t, "thesis", printed->printed, 1, "%.2f");
+        add_model(t, printed, 1, "%.2f");
+        add_model(t, corrected, 1, "%.2f");
+    }
+}
+
 // "T4.2" and its like.
 status table_predictions(const figure_order *order, artwork *out, fault *f)
 {
@@ -308,25 +328,9 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
                                                               TEXT_RIGHT}};
     table_page *t = new_table(order, columns, G_N_ELEMENTS(columns));
 
-    // a group for each quantity
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
-        const table_row *printed =
-            computed_row(all, table, "printed", quantities[q].quantity);
-        const table_row *corrected =
-            computed_row(all, table, "corrected", quantities[q].quantity);
-
-        // what the thesis prints, then both models
         table_add_group(t, quantities[q].label);
-        if (g_str_has_prefix(quantities[q].quantity, "delay")) {
-            // in milliseconds, which the thesis rounds
-            add_values(t, "thesis", printed->printed, 1e3, "%.0f");
-            add_model(t, printed, 1e3, "%.1f");
-            add_model(t, corrected, 1e3, "%.1f");
-        } else {
-            add_values(t, "thesis", printed->printed, 1, "%.2f");
-            add_model(t, printed, 1, "%.2f");
-            add_model(t, corrected, 1, "%.2f");
-        }
+        add_predictions(t, all, table, quantities[q].quantity);
     }
 
     t->parameters = text_printf("table=%s", table);
@@ -337,7 +341,7 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
         "from these tables (docs/explanation/model.md); the corrected one is "
         "derived again from mechanics and is not meant to agree. –: the arm swings away "
         "as it touches, there is no pulse.",
-        4.92 * computed_row(all, table, "printed", "max_force_energy")->k2_factor);
+        NOMINAL_K2 * computed_row(all, table, "printed", "max_force_energy")->k2_factor);
 }
 
 // ---- how near the computed tables come
@@ -386,7 +390,7 @@ table_page *defaults_table(int *next)
     parameters_resolve(&corrected, NULL);
     parameters_resolve(&printed, NULL);
 
-    // all whose paths begin alike
+    // all whose paths begin alike: "arm." or "motor."
     const char *group = parameter_table[*next].path;
     const size_t length = strcspn(group, ".");
     g_autofree char *title = text_printf("Parameters: %.*s", (int)length, group);
@@ -395,12 +399,15 @@ table_page *defaults_table(int *next)
            strncmp(parameter_table[*next].path, group, length + 1) == 0;
          ++*next) {
         const parameter_info *info = &parameter_table[*next];
-        char own[128], theirs[128];
-        parameter_format(&corrected, *next, own, sizeof own);
-        parameter_format(&printed, *next, theirs, sizeof theirs);
+        char of_corrected[128], of_printed[128];
+        parameter_format(&corrected, *next, of_corrected, sizeof of_corrected);
+        parameter_format(&printed, *next, of_printed, sizeof of_printed);
         g_autofree char *unit = text_unit(info->unit);
+
+        // a row of plain texts
+        const char *const texts[] = {info->path, of_corrected, of_printed, unit,
+                                     info->description};
         g_auto(GStrv) cells = g_new0(char *, G_N_ELEMENTS(columns) + 1);
-        const char *const texts[] = {info->path, own, theirs, unit, info->description};
         for (size_t k = 0; k < G_N_ELEMENTS(texts); k++) {
             cells[k] = text_escape(texts[k]);
         }

@@ -152,7 +152,7 @@ static char *short_tag(const char *tag)
 
 // Whether two tags are lines of one style, so that the data of the second can go on the
 // first.
-static bool are_one(const char *a, const char *b)
+static bool have_one_style(const char *a, const char *b)
 {
     const char *data = strstr(b, "d=\"M");
     return data != NULL && g_str_has_prefix(b, LINE_TAG) &&
@@ -164,20 +164,18 @@ static bool are_one(const char *a, const char *b)
 static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
 {
     size_t *last = context;
-    g_autofree char *tag = g_match_info_fetch(match, 1),
-                    *text = g_match_info_fetch(match, 2);
+    g_autofree char *tag = g_match_info_fetch(match, 1);
+    g_autofree char *text = g_match_info_fetch(match, 2);
     g_autofree char *brief = short_tag(tag);
-    if (*last != SIZE_MAX && are_one(out->str + *last, brief)) {
-        // in place of the quote and slash of the path before
+
+    // a path of the same style goes on in place of the last one's end
+    if (*last != SIZE_MAX && have_one_style(out->str + *last, brief)) {
         g_string_truncate(out, out->len - strlen("\"/>"));
         g_string_append(out, strstr(brief, "d=\"") + 3);
     } else {
-        const bool path =
-            g_str_has_prefix(brief, "<path") && g_str_has_suffix(brief, "\"/>");
-        if (path) {
+        *last = SIZE_MAX;
+        if (g_str_has_prefix(brief, "<path") && g_str_has_suffix(brief, "\"/>")) {
             *last = out->len;
-        } else {
-            *last = SIZE_MAX;
         }
         g_string_append(out, brief);
     }
