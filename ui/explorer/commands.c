@@ -2,7 +2,7 @@
 // the commands that give keys another meaning.
 #include "ui/explorer/explorer.h"
 
-#include <ctype.h>
+#include <glib.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -53,29 +53,31 @@ static bool find_command(explorer_input *input, const char *line, int *index)
 bool explorer_execute(explorer_model *model, explorer_view *view, explorer_input *input,
                       const char *line)
 {
-    char text[LINE_TEXT];
-    int begin = (int)strspn(line, " \t:"), index;
+    const int begin = (int)strspn(line, " \t:");
     line += begin;
     if (*line == '\0' || *line == '#') {
         return true;
     }
 
     // without the blanks at its end
+    char text[LINE_TEXT];
     if (snprintf(text, sizeof text, "%s", line) >= LINE_TEXT) {
         return act_refuse(input, "the line is too long");
     }
-    for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--) {
-        text[n - 1] = '\0';
-    }
+    g_strchomp(text);
 
-    size_t length = strcspn(text, " \t");
-    length += strspn(text + length, " \t");
+    // the command, and its argument behind it
+    int index;
     if (!find_command(input, text, &index)) {
         input->message.at = begin;
         return false;
     }
+    size_t length = strcspn(text, " \t");
+    length += strspn(text + length, " \t");
     input->message.at = 0;
     const bool done = call_action(model, view, input, index, text + length);
+
+    // what is wrong with the argument is said of the line
     input->message.at += begin + (int)length;
     return done;
 }
@@ -111,33 +113,44 @@ static bool read_key(explorer_input *input, const char *argument, int *key,
 static bool bind_key(explorer_view *view, explorer_input *input, int key,
                      const char *line)
 {
-    return key_bind(&view->keys, key, line) ||
-           act_refuse(input, "there are %d keys of your own already, no more fit",
-                      USER_KEYS);
+    if (!key_bind(&view->keys, key, line)) {
+        return act_refuse(input, "there are %d keys of your own already, no more fit",
+                          USER_KEYS);
+    }
+    return true;
+}
+
+// Says what a key does.
+static bool tell_key(explorer_input *input, const char *name, const char *line)
+{
+    if (line == NULL) {
+        return act_tell(input, "%s does nothing", name);
+    }
+    return act_tell(input, "%s does '%s'", name, line);
 }
 
 bool act_key(explorer_view *view, explorer_input *input, const char *argument)
 {
     const char *line;
-    char name[KEY_NAME], before[LINE_TEXT] = "";
     int key;
     if (!read_key(input, argument, &key, &line)) {
         return false;
     }
+    char name[KEY_NAME];
+    key_name(key, name, sizeof name);
 
     // without a command it is asked what the key does
-    key_name(key, name, sizeof name);
     const char *old = key_line(&view->keys, key);
     if (line[0] == '\0') {
-        if (old == NULL) {
-            return act_tell(input, "%s does nothing", name);
-        }
-        return act_tell(input, "%s does '%s'", name, old);
+        return tell_key(input, name, old);
     }
 
     // a copy of the old meaning: its place gets the new one
+    char before[LINE_TEXT] = "";
+    if (old != NULL) {
+        snprintf(before, sizeof before, "%s", old);
+    }
     int index;
-    snprintf(before, sizeof before, "%s", old ? old : "");
     if (!find_command(input, line, &index) || !bind_key(view, input, key, line)) {
         input->message.at = (int)(line - argument);
         return false;
@@ -148,10 +161,20 @@ bool act_key(explorer_view *view, explorer_input *input, const char *argument)
     return act_tell(input, "%s does '%s' now", name, line);
 }
 
+// Takes the user's key with this index back: the explorer's own comes back.
+static bool unbind_own(explorer_view *view, explorer_input *input, int own,
+                       const char *name, const char *built_in)
+{
+    view->keys.own[own] = view->keys.own[--view->keys.count];
+    if (built_in == NULL) {
+        return act_tell(input, "%s does nothing now", name);
+    }
+    return act_tell(input, "%s does '%s' again", name, built_in);
+}
+
 bool act_unkey(explorer_view *view, explorer_input *input, const char *argument)
 {
     const char *rest;
-    char name[KEY_NAME];
     int key;
     if (!read_key(input, argument, &key, &rest)) {
         return false;
@@ -161,16 +184,13 @@ bool act_unkey(explorer_view *view, explorer_input *input, const char *argument)
         return act_refuse(input, "unkey takes one key, what is '%s' for?", rest);
     }
 
-    // the user's key goes, the explorer's own comes back
+    // the user's key
+    char name[KEY_NAME];
     key_name(key, name, sizeof name);
     const char *built_in = key_built_in_line(key);
     const int own = key_own(&view->keys, key);
     if (own >= 0) {
-        view->keys.own[own] = view->keys.own[--view->keys.count];
-        if (built_in == NULL) {
-            return act_tell(input, "%s does nothing now", name);
-        }
-        return act_tell(input, "%s does '%s' again", name, built_in);
+        return unbind_own(view, input, own, name, built_in);
     }
 
     // one of the explorer's own does nothing then
@@ -214,63 +234,63 @@ bool explorer_open_session(explorer_model *model, explorer_view *view,
     return explorer_resume_session(model, view, input, path, carry_out_look);
 }
 
+// The name of a session's file: one without the ending by which the lab knows a session
+// gets it, but a file that is to be opened and is there is taken as it is.
+static void session_name(const char *path, bool saves, char name[LINE_TEXT])
+{
+    if (!saves && access(path, F_OK) == 0) {
+        snprintf(name, LINE_TEXT, "%s", path);
+        return;
+    }
+    const int stem = (int)text_stem(path, SESSION_ENDING);
+    snprintf(name, LINE_TEXT, "%.*s%s", stem, path, SESSION_ENDING);
+}
+
 bool act_session(explorer_model *model, explorer_view *view, explorer_input *input,
                  const char *argument)
 {
-    char word[8];
+    char word[8], name[LINE_TEXT];
     const char *path = text_cut(argument, " ", word, sizeof word);
-    const bool saves = strcmp(word, "save") == 0;
+    const bool saves = strcmp(word, "save") == 0, opens = strcmp(word, "open") == 0;
+
+    // without a name to save it under the prompt proposes one
     if (saves && path[0] == '\0') {
-        prompt_open(&input->prompt,
-                    model->session_path[0] ? model->session_path : "lab.session",
-                    "session save ");
+        const char *proposed = model->session_path;
+        if (proposed[0] == '\0') {
+            proposed = "lab.session";
+        }
+        prompt_open(&input->prompt, proposed, "session save ");
         return true;
     }
-    if ((!saves && strcmp(word, "open") != 0) || path[0] == '\0') {
+    if ((!saves && !opens) || path[0] == '\0') {
         return act_refuse(input,
                           "session takes save or open, and a file such as lab.session");
     }
-
-    // a name without the ending by which the lab knows a session gets it
-    char whole[LINE_TEXT];
-    const bool there = !saves && access(path, F_OK) == 0;
-    const int stem = (int)(there ? strlen(path) : text_stem(path, SESSION_ENDING));
-    snprintf(whole, sizeof whole, "%.*s%s", stem, path, there ? "" : SESSION_ENDING);
+    session_name(path, saves, name);
     if (saves) {
-        return explorer_save_session(model, view, input, whole);
+        return explorer_save_session(model, view, input, name);
     }
-    return explorer_open_session(model, view, input, whole);
+    return explorer_open_session(model, view, input, name);
 }
 
 // --- settings --------------------------------------------------------------------------
 
-#define REMEMBERED                                                                       \
-    " theme glyphs colours pixels closeup mouse bending colourby rate lanes slow speed " \
-    "panes "                                                                             \
-    "axis "                                                                              \
-    "key unkey "
+// The commands that :remember writes, with blanks round each.
+static const char remembered[] =
+    " theme glyphs colours pixels closeup mouse bending colourby rate lanes slow speed "
+    "panes axis key unkey ";
 
-// Executes a line of the file; errors are reported with line and column.
-static bool execute_line(explorer_model *model, explorer_view *view,
-                         explorer_input *input, const char *path, int number,
-                         const char *line)
+// Executes a line of the file, where only what :remember writes is taken.
+static bool execute_setting(explorer_model *model, explorer_view *view,
+                            explorer_input *input, const char *line)
 {
     const int begin = (int)strspn(line, " \t");
-
-    // only what :remember writes is taken from a file
     input->message.at = begin;
-    const bool taken =
-        strchr("#", line[begin]) != NULL || begins_with_one(line + begin, REMEMBERED);
-    bool done = false;
-    if (taken) {
-        done = explorer_execute(model, view, input, line);
-    } else {
-        act_refuse(input, "this is no setting");
+    if (line[begin] == '\0' || line[begin] == '#' ||
+        begins_with_one(line + begin, remembered)) {
+        return explorer_execute(model, view, input, line);
     }
-
-    // the place in the file comes before what is wrong
-    return done || act_refuse(input, "%s:%d:%d is ignored: %.200s", path, number,
-                              input->message.at + 1, input->message.text);
+    return act_refuse(input, "this is no setting");
 }
 
 void explorer_load_settings(explorer_model *model, explorer_view *view,
@@ -288,9 +308,17 @@ void explorer_load_settings(explorer_model *model, explorer_view *view,
     FILE *stream = fopen(path, "r");
     for (int number = 1; stream != NULL && getline(&line, &room, stream) >= 0; number++) {
         line[strcspn(line, "\r\n")] = '\0';
-        if (!execute_line(model, view, input, path, number, line) && faults++ == 0) {
+        if (execute_setting(model, view, input, line)) {
+            continue;
+        }
+
+        // the first that is wrong is said with its place
+        if (faults == 0) {
+            act_refuse(input, "%s:%d:%d is ignored: %.200s", path, number,
+                       input->message.at + 1, input->message.text);
             first = input->message;
         }
+        faults++;
     }
     free(line);
     if (stream != NULL) {

@@ -12,27 +12,28 @@ enum { CANDIDATE = 160, FITTING = 1024 }; // bytes of one, and how many
 // The i-th of words with a bar between them; false beyond the last.
 static bool word_between_bars(const char *words, int i, char *text)
 {
-    for (; i > 0 && words != NULL; i--) {
+    for (; i > 0; i--) {
         words = strchr(words, '|');
-        if (words != NULL) {
-            words = words + 1;
-        } else {
-            words = NULL;
+        if (words == NULL) {
+            return false;
         }
+        words++;
     }
-    text_cut(words != NULL ? words : "", "|", text, CANDIDATE);
-    return words != NULL;
+    text_cut(words, "|", text, CANDIDATE);
+    return true;
 }
 
 // The values that a parameter of a few can have; false beyond the last.
 static bool parameter_value(int parameter, int i, char *text)
 {
-    const parameter_info *info = parameter >= 0 ? &parameter_table[parameter] : NULL;
-    return info != NULL &&
-           (info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN) &&
-           word_between_bars(info->type == PARAMETER_CHOICE ? info->choices
-                                                            : "true|false",
-                             i, text);
+    if (parameter < 0) {
+        return false;
+    }
+    const parameter_info *info = &parameter_table[parameter];
+    if (info->type == PARAMETER_CHOICE) {
+        return word_between_bars(info->choices, i, text);
+    }
+    return info->type == PARAMETER_BOOLEAN && word_between_bars("true|false", i, text);
 }
 
 // The i-th of the words that a command's argument chooses from; those in capitals stand
@@ -74,14 +75,21 @@ static void read_kind(const char *argument, int n, char *kind)
     kind[length] = '\0';
 }
 
+// What is completed where a word begins in a line.
 static place place_in(const char *line, const char *word)
 {
     place p = {0};
     for (const char *c = line; c < word; c++) {
-        p.word += *c == ' ' && (c == line || c[-1] != ' ');
+        if (*c == ' ' && (c == line || c[-1] != ' ')) {
+            p.word++;
+        }
     }
     const char *argument = text_cut(line, " ", p.command, sizeof p.command);
-    text_cut(p.word > 1 ? argument : "", " ", p.first, sizeof p.first);
+    if (p.word > 1) {
+        text_cut(argument, " ", p.first, sizeof p.first);
+    }
+
+    // what the command's description says of it
     const int index = explorer_command_find(p.command);
     if (p.word > 0 && index >= 0) {
         read_kind(explorer_command_table[index].argument, p.word, p.kind);
@@ -95,70 +103,78 @@ static bool is_of(const place *p, const char *name)
     return strstr(p->kind, name) != NULL;
 }
 
+// The i-th law that a command takes, "off" behind the last; NULL beyond that.
+static const char *law_candidate(int i)
+{
+    if (i < LAW_COUNT) {
+        return control_law_table[i].word;
+    }
+    if (i == LAW_COUNT) {
+        return "off";
+    }
+    return NULL;
+}
+
+// The i-th mode that the law can be held in, then "next" and "off".
+static const char *mode_candidate(explorer_model *model, int i)
+{
+    const law_modes *m = model_law_modes(model);
+    if (i < m->count) {
+        return m->names[i];
+    }
+    if (i == m->count) {
+        return "next";
+    }
+    if (i == m->count + 1) {
+        return "off";
+    }
+    return NULL;
+}
+
+// The i-th name of one kind, by the command's description or its name; NULL beyond the
+// last, or if the word is of no kind that has names.
+static const char *name_candidate(explorer_model *model, const explorer_view *view,
+                                  const place *p, int i)
+{
+    if (p->word == 0) {
+        return i < explorer_command_count ? explorer_command_table[i].name : NULL;
+    }
+    if (is_of(p, "PATH")) {
+        return i < parameter_count ? parameter_table[i].path : NULL;
+    }
+    if (is_of(p, "QUANTITY")) {
+        return i < summary_count ? summary_table[i].key : NULL;
+    }
+    if (is_of(p, "SIGNAL")) {
+        return i < signal_count ? signal_table[i].name : NULL;
+    }
+    if (strcmp(p->command, "law") == 0) {
+        return law_candidate(i);
+    }
+    if (is_of(p, "MODE")) {
+        return mode_candidate(model, i);
+    }
+    if (strcmp(p->command, "open") == 0) {
+        return i < view->scenarios.count ? view->scenarios.names[i] : NULL;
+    }
+    return NULL;
+}
+
 // Writes the i-th candidate for the word that is being typed; false beyond the last.
 static bool candidate(explorer_model *model, const explorer_view *view, const place *p,
                       int i, char *text)
 {
-    const char *name = NULL;
-
-    // names of one kind, by the command's description or its name
-    if (p->word == 0) {
-        if (i < explorer_command_count) {
-            name = explorer_command_table[i].name;
-        } else {
-            name = NULL;
-        }
-    } else if (is_of(p, "PATH")) {
-        if (i < parameter_count) {
-            name = parameter_table[i].path;
-        } else {
-            name = NULL;
-        }
-    } else if (is_of(p, "QUANTITY")) {
-        if (i < summary_count) {
-            name = summary_table[i].key;
-        } else {
-            name = NULL;
-        }
-    } else if (is_of(p, "SIGNAL")) {
-        if (i < signal_count) {
-            name = signal_table[i].name;
-        } else {
-            name = NULL;
-        }
-    } else if (strcmp(p->command, "set") == 0) {
-        return p->word == 2 && parameter_value(parameter_of_name(p->first), i, text);
-    } else if (strcmp(p->command, "law") == 0) {
-        if (i < LAW_COUNT) {
-            name = control_law_table[i].word;
-        } else if (i == LAW_COUNT) {
-            name = "off";
-        } else {
-            name = NULL;
-        }
-    } else if (is_of(p, "MODE")) {
-        const law_modes *m = model_law_modes(model);
-        if (i < m->count) {
-            name = m->names[i];
-        } else if (i == m->count) {
-            name = "next";
-        } else if (i == m->count + 1) {
-            name = "off";
-        } else {
-            name = NULL;
-        }
-    } else if (strcmp(p->command, "open") == 0) {
-        if (i < view->scenarios.count) {
-            name = view->scenarios.names[i];
-        } else {
-            name = NULL;
-        }
-    } else {
-        return is_of(p, "|") && argument_word(p->kind, i, text);
+    const char *name = name_candidate(model, view, p, i);
+    if (name != NULL) {
+        snprintf(text, CANDIDATE, "%s", name);
+        return true;
     }
 
-    snprintf(text, CANDIDATE, "%s", name != NULL ? name : "");
-    return name != NULL;
+    // the values of a parameter, or the words of a description
+    if (strcmp(p->command, "set") == 0 && p->word == 2) {
+        return parameter_value(parameter_of_name(p->first), i, text);
+    }
+    return is_of(p, "|") && argument_word(p->kind, i, text);
 }
 
 // Whether a candidate or its last part (motor.VOLTAGE, thesis/FIG-3-4) begins with what
@@ -178,7 +194,9 @@ static int collect(explorer_model *model, const explorer_view *view, const place
     int count = 0;
     for (int i = 0; count < FITTING && candidate(model, view, p, i, fitting[count]);
          i++) {
-        count += fits(fitting[count], word);
+        if (fits(fitting[count], word)) {
+            count++;
+        }
     }
     return count;
 }
@@ -191,15 +209,10 @@ static void put_word(prompt *p, const char *word, const char *after)
     snprintf(p->text + at, sizeof p->text - at, "%s%s", word, after);
 }
 
-// As far as all candidates agree, and what they are.
-static bool complete_common(explorer_input *input, char fitting[FITTING][CANDIDATE],
-                            int count)
+// Cuts the first of some words to what all of them begin with.
+static void cut_to_common(char fitting[FITTING][CANDIDATE], int count)
 {
-    prompt *p = &input->prompt;
-    char listed[512] = "", *common = fitting[0];
-    for (int i = 0; i < count; i++) {
-        text_add(listed, sizeof listed, "%s ", fitting[i]);
-    }
+    char *common = fitting[0];
     for (int i = 1; i < count; i++) {
         size_t same = 0;
         while (common[same] != '\0' && common[same] == fitting[i][same]) {
@@ -207,12 +220,27 @@ static bool complete_common(explorer_input *input, char fitting[FITTING][CANDIDA
         }
         common[same] = '\0';
     }
+}
+
+// As far as all candidates agree, and what they are if there are several.
+static bool complete_common(explorer_input *input, char fitting[FITTING][CANDIDATE],
+                            int count)
+{
+    prompt *p = &input->prompt;
+    char listed[512] = "";
+    if (count > 1) {
+        for (int i = 0; i < count; i++) {
+            text_add(listed, sizeof listed, "%s ", fitting[i]);
+        }
+    }
+    cut_to_common(fitting, count);
 
     // what agrees may be less than what is typed, where last parts fit
-    if (strlen(common) >= strlen(p->stem)) {
-        put_word(p, common, count == 1 ? " " : "");
+    if (strlen(fitting[0]) >= strlen(p->stem)) {
+        const char *after = count == 1 ? " " : "";
+        put_word(p, fitting[0], after);
     }
-    return act_tell(input, "%s", count > 1 ? listed : "");
+    return act_tell(input, "%s", listed);
 }
 
 // Where the last word begins: behind a blank, in an expression behind an operator, too.

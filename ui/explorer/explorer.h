@@ -28,7 +28,7 @@ typedef struct recovery {
     int lock, left_lock;         // descriptors that hold their locks, -1 for none
     bool changed;                // something may be that was not written
     double due;                  // when it may be written next [s]
-    bool told;                   // that it cannot be
+    bool failure_shown;          // that it cannot be
     pthread_t writer;            // the thread that writes `text`, if it does
     bool writes;
     atomic_bool done;
@@ -131,8 +131,8 @@ bool recovery_begin(explorer *ex);
 bool recovery_answer(explorer *ex, int key);
 
 // Writes the file if something may have changed, on a thread of its own and not more than
-// once a second. Returns after how many seconds at most to call again. A file that cannot
-// be written is told once.
+// once a second. Returns after how many seconds at most to call again. That it cannot be
+// written is said once.
 double recovery_keep(explorer *ex, bool changed, double now);
 
 // Removes the file if the user ended the lab; else what was changed last is written.

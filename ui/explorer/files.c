@@ -76,9 +76,14 @@ static bool exists(const char *path)
 // given if there is none.
 static bool tell_file(explorer_input *input, bool done, const char *name)
 {
-    char *found = realpath(name, NULL), path[MESSAGE_TEXT / 2];
-    snprintf(path, sizeof path, "%s", found != NULL ? found : name);
-    free(found);
+    char path[MESSAGE_TEXT / 2];
+    char *whole = realpath(name, NULL);
+    if (whole != NULL) {
+        snprintf(path, sizeof path, "%s", whole);
+    } else {
+        snprintf(path, sizeof path, "%s", name);
+    }
+    free(whole);
     if (done) {
         return act_tell(input, "saved %s", path);
     }
@@ -87,31 +92,37 @@ static bool tell_file(explorer_input *input, bool done, const char *name)
                       path, name);
 }
 
-// Asks for a name and proposes one that no file has: the scenario's, what the last change
-// changed, and a number if need be.
-static void propose_name(const explorer_model *model, explorer_input *input,
-                         const char *command, const char *ending)
+// What a file of the run is called, without its ending: as the scenario, with what the
+// last change changed.
+static void name_of_run(const session *s, char *stem, size_t size)
 {
-    const session *s = &model->session;
-    char stem[100] = "", name[LINE_TEXT / 2];
+    stem[0] = '\0';
     text_add(stem, 59, "%s", scenario_leaf(s->base.name));
-
-    // what the last change changed
-    const session_input *last =
-        s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
-    if (last != NULL && last->kind == SESSION_INPUT_PUSH) {
-        text_add(stem, sizeof stem, "-push");
-    } else if (last != NULL) {
-        text_add(stem, 79, "-%s", strchr(parameter_table[last->parameter].path, '.') + 1);
-        text_add(stem, 99, "-%s", last->text);
+    if (s->input_count > 0) {
+        const session_input *last = &s->inputs[s->input_count - 1];
+        if (last->kind == SESSION_INPUT_PUSH) {
+            text_add(stem, size, "-push");
+        } else {
+            const char *path = parameter_table[last->parameter].path;
+            text_add(stem, 79, "-%s", strchr(path, '.') + 1);
+            text_add(stem, 99, "-%s", last->text);
+        }
     }
 
-    // letters, digits and a few marks only; the first that is free
+    // letters, digits and a few marks only
     for (char *c = stem; *c != '\0'; c++) {
-        if (!(isalnum((unsigned char)*c) || strchr(".-_", *c) != NULL)) {
+        if (!isalnum((unsigned char)*c) && strchr(".-_", *c) == NULL) {
             *c = '-';
         }
     }
+}
+
+// Asks for a name and proposes the first one of the run that no file has.
+static void propose_file_name(const explorer_model *model, explorer_input *input,
+                              const char *command, const char *ending)
+{
+    char stem[100], name[LINE_TEXT / 2];
+    name_of_run(&model->session, stem, sizeof stem);
     snprintf(name, sizeof name, "%s%s", stem, ending);
     for (int i = 2; exists(name) && i < 10000; i++) {
         snprintf(name, sizeof name, "%s-%d%s", stem, i, ending);
@@ -121,22 +132,25 @@ static void propose_name(const explorer_model *model, explorer_input *input,
 
 // --- the commands ----------------------------------------------------------------------
 
-// Whether the file is none that the run or the measured data were read from.
+// Refuses a file that the run or the measured data were read from.
 static bool is_free(const explorer_model *model, explorer_input *input, const char *name)
 {
     const session *s = &model->session;
-    const char *const read[] = {s->base.file, model->measured.row_count > 0
-                                                  ? model->measured_file
-                                                  : NULL};
+    fault *f = &input->fault;
     result_places_add(name);
-    bool kept = outside_keep(&s->effective.parameters, &input->fault) == STATUS_OK;
-    for (size_t i = 0; i < sizeof read / sizeof read[0]; i++) {
-        kept = kept && (read[i] == NULL ||
-                        input_file_check_kept(read[i], &input->fault) == STATUS_OK);
+    bool kept = outside_keep(&s->effective.parameters, f) == STATUS_OK;
+    if (kept && s->base.file != NULL) {
+        kept = input_file_check_kept(s->base.file, f) == STATUS_OK;
+    }
+    if (kept && model->measured.row_count > 0) {
+        kept = input_file_check_kept(model->measured_file, f) == STATUS_OK;
     }
     result_places_forget();
-    return kept ||
-           act_refuse(input, "%.200s is a file that this run reads: another name", name);
+    if (!kept) {
+        return act_refuse(input, "%.200s is a file that this run reads: another name",
+                          name);
+    }
+    return true;
 }
 
 // Writes what the name's ending asks for; a file that is there is replaced.
@@ -188,7 +202,7 @@ bool act_save(explorer_model *model, explorer_view *view, explorer_input *input,
 {
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
-        propose_name(model, input, "save", ".png");
+        propose_file_name(model, input, "save", ".png");
         return act_tell(
             input, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
                    "gives this run; .txt: the screen");
@@ -216,7 +230,7 @@ bool act_scene(const explorer_model *model, explorer_input *input, const char *a
 
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
-        propose_name(model, input, "scene", "-arm.png");
+        propose_file_name(model, input, "scene", "-arm.png");
         return true;
     }
 

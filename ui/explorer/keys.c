@@ -8,27 +8,37 @@
 
 // --- keys ------------------------------------------------------------------------------
 
+// The key at the beginning of a text, which moves behind it: a character, or a name in
+// angle brackets. 0, with the reason in f, for a name that no key has.
+static int take_key(const char **text, fault *f)
+{
+    const char *begin = *text;
+    const char *close = *begin == '<' ? strchr(begin, '>') : NULL;
+
+    // a character by itself, unless it begins a name
+    if (close == NULL && (unsigned char)*begin < 0x80) {
+        *text = begin + 1;
+        return *begin;
+    }
+    if (close == NULL) {
+        return (int)glyph_decode(text);
+    }
+
+    const int key = key_of_name(begin + 1, (size_t)(close - begin - 1));
+    if (key == 0) {
+        fault_set(f, STATUS_BAD_ARGUMENT, "there is no key '%.*s'",
+                  (int)(close - begin + 1), begin);
+    }
+    *text = close + 1;
+    return key;
+}
+
 bool explorer_keys(explorer *ex, const char *text, fault *f)
 {
     while (*text != '\0' && !ex->input.quit) {
-        // a character by itself, unless it begins a name
-        const char *close = *text == '<' ? strchr(text, '>') : NULL;
-        const bool plain = (unsigned char)*text < 0x80;
-        int key;
-        if (close != NULL) {
-            key = key_of_name(text + 1, (size_t)(close - text - 1));
-        } else if (plain) {
-            key = *text++;
-        } else {
-            key = (int)glyph_decode(&text);
-        }
-        if (close != NULL && key == 0) {
-            fault_set(f, STATUS_BAD_ARGUMENT, "there is no key '%.*s'",
-                      (int)(close - text + 1), text);
+        const int key = take_key(&text, f);
+        if (key == 0) {
             return false;
-        }
-        if (close != NULL) {
-            text = close + 1;
         }
         explorer_key(ex, key);
     }
@@ -39,17 +49,19 @@ bool explorer_keys(explorer *ex, const char *text, fault *f)
 static void enter_prompt(explorer *ex)
 {
     static palette_entry entries[PALETTE_ENTRIES];
+    const explorer_view *view = &ex->view;
     prompt *p = &ex->input.prompt;
-    char line[LINE_TEXT];
-    bool needs_argument = false;
-    const int at = palette_shows(p) ? ex->view.palette.selected : -1;
 
     // a copy: the command may open the prompt again
+    char line[LINE_TEXT];
     snprintf(line, sizeof line, "%s", p->text);
-    if (at >= 0 &&
-        at < palette_find(&ex->view.scenarios, &ex->view.keys, p->text, entries)) {
-        palette_line(&ex->view.scenarios, &ex->view.keys, entries[at], line,
-                     &needs_argument);
+
+    // the selected entry takes the place of what was typed
+    bool needs_argument = false;
+    const int at = view->palette.selected;
+    if (palette_shows(p) && at >= 0 &&
+        at < palette_find(&view->scenarios, &view->keys, p->text, entries)) {
+        palette_line(&view->scenarios, &view->keys, entries[at], line, &needs_argument);
     }
     p->open = false;
     act_clear_message(&ex->input);
@@ -57,6 +69,8 @@ static void enter_prompt(explorer *ex)
         prompt_open(p, NULL, "%s", line);
         return;
     }
+
+    // the first line that fails is kept for the end
     snprintf(p->history, sizeof p->history, "%s", line);
     if (!explorer_carry_out(ex, line) && ex->first_failure[0] == '\0') {
         snprintf(ex->first_failure, sizeof ex->first_failure, "%s",
@@ -73,14 +87,18 @@ static bool leaves(int key)
 // Whether a key moved in the palette that the prompt shows: Up leaves it at its top.
 static bool key_in_palette(explorer_view *view, const explorer_input *input, int key)
 {
-    const bool down = key == KEY_CODE_DOWN || key == ('n' & 0x1f);
-    const bool up = key == KEY_CODE_UP || key == ('p' & 0x1f);
-    const bool moves =
-        palette_shows(&input->prompt) && (down || (up && view->palette.selected >= 0));
-    if (moves) {
-        act_move_in_palette(view, input, down ? 1 : -1);
+    if (!palette_shows(&input->prompt)) {
+        return false;
     }
-    return moves;
+    if (key == KEY_CODE_DOWN || key == ('n' & 0x1f)) {
+        act_move_in_palette(view, input, 1);
+        return true;
+    }
+    if ((key == KEY_CODE_UP || key == ('p' & 0x1f)) && view->palette.selected >= 0) {
+        act_move_in_palette(view, input, -1);
+        return true;
+    }
+    return false;
 }
 
 static void key_in_prompt(explorer *ex, int key)
@@ -122,27 +140,33 @@ static void key_in_prompt(explorer *ex, int key)
 // it.
 static void key_in_filter(explorer *ex, int key)
 {
-    const panel_id filtered = ex->view.filters.typing;
-    const bool enters = key == KEY_CODE_ENTER;
-    if (leaves(key)) {
-        ex->view.filters.text[filtered][0] = '\0';
-    }
-    if (enters || leaves(key)) {
-        ex->view.filters.typing = PANEL_NONE;
-    } else {
-        ex->view.filters.typing = filtered;
+    explorer_view *view = &ex->view;
+    const panel_id filtered = view->filters.typing;
+    char *text = view->filters.text[filtered];
+    if (key == KEY_CODE_ENTER) {
+        view->filters.typing = PANEL_NONE;
+        if (filtered == PANEL_PARAMETERS && !view->parameters.on_heading) {
+            explorer_carry_out(ex, "edit");
+        }
+        return;
     }
     if (key == KEY_CODE_UP) {
-        act_select_line(&ex->model, &ex->view, -1);
-    } else if (key == KEY_CODE_DOWN) {
-        act_select_line(&ex->model, &ex->view, 1);
-    } else if (enters && filtered == PANEL_PARAMETERS &&
-               !ex->view.parameters.on_heading) {
-        explorer_carry_out(ex, "edit");
-    } else if (!enters) {
-        text_type(ex->view.filters.text[filtered], key);
-        act_select_filtered(&ex->model, &ex->view, filtered);
+        act_select_line(&ex->model, view, -1);
+        return;
     }
+    if (key == KEY_CODE_DOWN) {
+        act_select_line(&ex->model, view, 1);
+        return;
+    }
+
+    // what is typed changes the filter, and what is selected then
+    if (leaves(key)) {
+        text[0] = '\0';
+        view->filters.typing = PANEL_NONE;
+    } else {
+        text_type(text, key);
+    }
+    act_select_filtered(&ex->model, view, filtered);
 }
 
 // Esc takes back one thing at a time: what is computed, a filter, the mark.
@@ -169,19 +193,23 @@ static void escape(explorer *ex)
     act_clear_message(&ex->input);
 }
 
+// The line that a key means: the answer to what is asked, else that of the table of keys;
+// NULL for none.
+static const char *meaning_of_key(const explorer *ex, int key)
+{
+    if (key == 's' && ex->input.asked_to_quit) {
+        return "session save";
+    }
+    if (key == 'y' && ex->model.session.run.summary.status == STATUS_NOT_ALLOWED) {
+        return "allow";
+    }
+    return key_line(&ex->view.keys, key);
+}
+
 static void key_by_table(explorer *ex, int key)
 {
     const bool asked = ex->input.asked_to_quit;
-
-    // the answers to what is asked come before the table
-    const char *bound = "session save";
-    if (!(key == 's' && asked)) {
-        if (key == 'y' && ex->model.session.run.summary.status == STATUS_NOT_ALLOWED) {
-            bound = "allow";
-        } else {
-            bound = key_line(&ex->view.keys, key);
-        }
-    }
+    const char *bound = meaning_of_key(ex, key);
     if (bound != NULL) {
         // a copy: the command may be one that binds keys
         char line[LINE_TEXT];
@@ -197,7 +225,9 @@ static void key_by_table(explorer *ex, int key)
     }
 
     // the answer is the very next key
-    ex->input.asked_to_quit = ex->input.asked_to_quit && !asked;
+    if (asked) {
+        ex->input.asked_to_quit = false;
+    }
 }
 
 void explorer_key(explorer *ex, int key)
@@ -233,15 +263,15 @@ void explorer_key(explorer *ex, int key)
 
 void explorer_paste(explorer *ex, int character)
 {
-    const bool typing =
-        ex->input.prompt.open || ex->view.filters.typing != PANEL_NONE ||
-        (ex->view.page == PANEL_SCENARIOS && ex->view.scenarios.filtering);
-    const bool blank = character == '\n' || character == '\r' || character == '\t';
+    const explorer_view *view = &ex->view;
+    const bool typing = ex->input.prompt.open || view->filters.typing != PANEL_NONE ||
+                        (view->page == PANEL_SCENARIOS && view->scenarios.filtering);
     if (!typing) {
         act_warn(&ex->input, "pasted text does nothing here, : opens the prompt for it");
-    } else if (blank ||
-               (character >= ' ' && character < KEY_CODE_FIRST && character != 127)) {
-        explorer_key(ex, blank ? ' ' : character);
+    } else if (character == '\n' || character == '\r' || character == '\t') {
+        explorer_key(ex, ' ');
+    } else if (character >= ' ' && character < KEY_CODE_FIRST && character != 127) {
+        explorer_key(ex, character);
     }
 }
 

@@ -38,17 +38,21 @@ static void *write_text(void *context)
         flock(lock, LOCK_EX | LOCK_NB);
         fputs(r->text, file.stream);
         r->code = whole_file_commit(&file, &r->fault);
-        close(r->code == STATUS_OK ? r->lock : lock);
+
+        // it takes the place of the lock on the file that was replaced
         if (r->code == STATUS_OK) {
+            close(r->lock);
             r->lock = lock;
+        } else {
+            close(lock);
         }
     }
     atomic_store(&r->done, true);
     return NULL;
 }
 
-// Waits for the end of what is being written; what hinders it is told once.
-static void end_writing(explorer *ex)
+// Waits for the end of what is being written; what hinders it is said once.
+static void finish_writing(explorer *ex)
 {
     recovery *r = &ex->recovery;
     if (r->writes) {
@@ -57,9 +61,9 @@ static void end_writing(explorer *ex)
     r->writes = false;
     free(r->text);
     r->text = NULL;
-    if (r->code != STATUS_OK && !r->told) {
+    if (r->code != STATUS_OK && !r->failure_shown) {
         const char *why = r->fault.text[0] != '\0' ? r->fault.text : status_text(r->code);
-        r->told =
+        r->failure_shown =
             act_warn(&ex->input, "your changes would not outlive a crash: %.400s", why);
     }
 }
@@ -93,7 +97,7 @@ static void begin_writing(explorer *ex)
         write_text(r);
     }
     if (!r->writes) {
-        end_writing(ex);
+        finish_writing(ex);
     }
 }
 
@@ -102,7 +106,7 @@ double recovery_keep(explorer *ex, bool changed, double now)
     recovery *r = &ex->recovery;
     r->changed = r->changed || changed;
     if (r->writes && r->done) {
-        end_writing(ex);
+        finish_writing(ex);
     }
     if (r->changed && !r->writes && now >= r->due) {
         begin_writing(ex);
@@ -120,10 +124,10 @@ double recovery_keep(explorer *ex, bool changed, double now)
 void recovery_end(explorer *ex, bool orderly)
 {
     recovery *r = &ex->recovery;
-    end_writing(ex);
+    finish_writing(ex);
     if (!orderly && r->changed) {
         begin_writing(ex);
-        end_writing(ex);
+        finish_writing(ex);
     }
     if (orderly && r->lock >= 0) {
         unlink(r->path);
@@ -155,6 +159,35 @@ static int lock_left(int folder, const char *name)
     return -1;
 }
 
+// Finds the newest file of a lab that has ended, in the folder of this lab's own; false
+// if there is none. It stays locked.
+static bool find_left(recovery *r)
+{
+    const size_t length = (size_t)(strrchr(r->path, '/') - r->path) + 1;
+    char *name = r->left + length;
+    snprintf(r->left, sizeof r->left, "%.*s", (int)length, r->path);
+    DIR *folder = opendir(r->left);
+    if (folder == NULL) {
+        return false;
+    }
+
+    // names have the time of their lab's start, so the last is the newest
+    for (struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
+        const char *found = entry->d_name;
+        if (strncmp(found, offered, strlen(offered)) != 0 || strcmp(found, name) <= 0) {
+            continue;
+        }
+        const int lock = lock_left(dirfd(folder), found);
+        if (lock >= 0) {
+            close(r->left_lock);
+            r->left_lock = lock;
+            snprintf(name, sizeof r->left - length, "%s", found);
+        }
+    }
+    closedir(folder);
+    return r->left_lock >= 0;
+}
+
 bool recovery_begin(explorer *ex)
 {
     recovery *r = &ex->recovery;
@@ -164,34 +197,18 @@ bool recovery_begin(explorer *ex)
              getpid());
     user_file(USER_STATE, name, r->path, sizeof r->path, true);
     r->lock = r->left_lock = -1;
-
-    // the newest of those whose labs have ended
-    const int length = (int)(strrchr(r->path, '/') - r->path) + 1;
-    snprintf(r->left, sizeof r->left, "%.*s", length, r->path);
-    DIR *folder = opendir(r->left);
-    for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
-        const char *found = entry->d_name;
-        const bool newer = strncmp(found, offered, strlen(offered)) == 0 &&
-                           strcmp(found, r->left + length) > 0;
-        const int lock = newer ? lock_left(dirfd(folder), found) : -1;
-        if (lock >= 0) {
-            close(r->left_lock);
-            r->left_lock = lock;
-            snprintf(r->left + length, sizeof r->left - (size_t)length, "%s", found);
-        }
-    }
-    if (folder != NULL) {
-        closedir(folder);
-    }
-    if (r->left_lock < 0 || fstat(r->left_lock, &about) != 0) {
+    if (!find_left(r) || fstat(r->left_lock, &about) != 0) {
         r->left[0] = '\0';
         return false;
     }
-    strftime(name, sizeof name, "%e %b at %H:%M", localtime(&about.st_mtime));
+
+    // when it was written last
+    char when[64];
+    strftime(when, sizeof when, "%e %b at %H:%M", localtime(&about.st_mtime));
     return act_warn(&ex->input,
                     "a lab ended on %s with work that was not saved: y goes on with it, "
                     "n keeps it as a file, after any other key the next start asks again",
-                    name);
+                    when);
 }
 
 bool recovery_answer(explorer *ex, int key)

@@ -13,18 +13,20 @@
 
 // --- saving ----------------------------------------------------------------------------
 
-// Adds a line on how the runs are looked at, if it is needed.
-static void add_line(session_file *file, bool needed, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+// Adds a line on how the runs are looked at, as far as there is room.
+static void add_line(session_file *file, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
-static void add_line(session_file *file, bool needed, const char *format, ...)
+static void add_line(session_file *file, const char *format, ...)
 {
-    const bool adds = needed && file->line_count < SESSION_FILE_LINES;
+    if (file->line_count == SESSION_FILE_LINES) {
+        return;
+    }
     va_list list;
     va_start(list, format);
-    char *line = adds ? decimal_vtext(format, list) : NULL;
+    char *line = decimal_vtext(format, list);
     va_end(list);
-    loss_unless(line != NULL || !adds);
+    loss_unless(line != NULL);
     if (line != NULL) {
         file->lines[file->line_count++] = line;
     }
@@ -37,26 +39,48 @@ static void add_pane(const explorer_model *model, const explorer_view *view,
 {
     static const char *const views[] = {"trace", "phase", "residual", "spectrum"};
     const pane *p = &view->panes.pane[index];
-    char signals[PANE_SIGNALS * (LINE_TEXT + 1)] = "";
-    for (int k = 0; k < p->count; k++) {
-        text_add(signals, sizeof signals, "%s%s", k > 0 ? "," : " ",
-                 signal_table[p->signals[k]].name);
-    }
-    add_line(file, index >= PANES_OF_TABLE && p->shown, "%s%s", views[p->view], signals);
 
-    // axes and hidden signals of what can be shown again; a lesson hides signals of its
-    // own
-    const bool again = p->count > 0 && (index < PANES_OF_TABLE || p->shown);
-    const bool fixed = p->scaling == AXIS_FIXED;
-    add_line(file, again && fixed, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high,
-             number);
-    add_line(file, again && !fixed && p->scaling != AXIS_AUTO, "axis %s %d",
-             axis_scaling_words[p->scaling], number);
-    add_line(file, again && (p->hidden != 0 || model->lesson.on), "signal all %d",
-             number);
+    // the command that makes one of the user's
+    const bool own = index >= PANES_OF_TABLE;
+    if (own && p->shown) {
+        char signals[PANE_SIGNALS * (LINE_TEXT + 1)] = "";
+        for (int k = 0; k < p->count; k++) {
+            const char *separator = k > 0 ? "," : " ";
+            text_add(signals, sizeof signals, "%s%s", separator,
+                     signal_table[p->signals[k]].name);
+        }
+        add_line(file, "%s%s", views[p->view], signals);
+    }
+
+    // axes of what can be shown again
+    if (p->count == 0 || (own && !p->shown)) {
+        return;
+    }
+    if (p->scaling == AXIS_FIXED) {
+        add_line(file, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high, number);
+    } else if (p->scaling != AXIS_AUTO) {
+        add_line(file, "axis %s %d", axis_scaling_words[p->scaling], number);
+    }
+
+    // hidden signals; a lesson hides signals of its own
+    if (p->hidden != 0 || model->lesson.on) {
+        add_line(file, "signal all %d", number);
+    }
     for (int k = 0; k < p->count; k++) {
-        add_line(file, again && (p->hidden >> k & 1), "signal %s %d",
-                 signal_table[p->signals[k]].name, number);
+        if (p->hidden >> k & 1) {
+            add_line(file, "signal %s %d", signal_table[p->signals[k]].name, number);
+        }
+    }
+}
+
+// The panes of the table that are shown, as their numbers.
+static void shown_panes(const explorer_view *view, char text[PANES + 1])
+{
+    text[0] = '\0';
+    for (int i = 0; i < PANES_OF_TABLE; i++) {
+        if (view->panes.pane[i].shown) {
+            text_add(text, PANES + 1, "%d", i + 1);
+        }
     }
 }
 
@@ -64,36 +88,46 @@ static void add_pane(const explorer_model *model, const explorer_view *view,
 static void add_looks(const explorer_model *model, const explorer_view *view,
                       session_file *file)
 {
-    char shown[PANES + 1] = "";
-    for (int i = 0; i < PANES_OF_TABLE; i++) {
-        if (view->panes.pane[i].shown) {
-            text_add(shown, sizeof shown, "%d", i + 1);
-        }
+    add_line(file, "lanes %s", look_word(&view->looks, look_choice_of("lanes")));
+    if (view->panes.chosen) {
+        char shown[PANES + 1];
+        shown_panes(view, shown);
+        add_line(file, "panes %s", shown);
     }
-    add_line(file, true, "lanes %s", look_word(&view->looks, look_choice_of("lanes")));
-    add_line(file, view->panes.chosen, "panes %s", shown);
-    for (int i = 0, number = 1; i < PANES; i++) {
+
+    // hidden panes of the user's own are left out, so that the others move up
+    int number = 1;
+    for (int i = 0; i < PANES; i++) {
         add_pane(model, view, file, i, number);
         if (i < PANES_OF_TABLE || view->panes.pane[i].shown) {
             number++;
         }
     }
+
+    // the visible part, and notes
     const time_window *w = &view->window;
-    const int band = model->band.signal, limit = model->limit.signal;
-    add_line(file, w->to > w->from, "zoom %.17g %.17g", w->from, w->to);
+    if (w->to > w->from) {
+        add_line(file, "zoom %.17g %.17g", w->from, w->to);
+    }
     for (int i = 0; i < model->note_count; i++) {
-        add_line(file, true, "note @%.17g %.200s", model->notes[i].time,
-                 model->notes[i].text);
+        const note *n = &model->notes[i];
+        add_line(file, "note @%.17g %.200s", n->time, n->text);
     }
-    add_line(file, view->looks.by_run, "colourby run");
-    if (band >= 0) {
-        add_line(file, true, "band %s %.17g", signal_table[band].name, model->band.bound);
+
+    // colours, bounds, the mark
+    const solved_limit *band = &model->band, *limit = &model->limit;
+    if (view->looks.by_run) {
+        add_line(file, "colourby run");
     }
-    if (limit >= 0) {
-        add_line(file, true, "limit %s %.17g", signal_table[limit].name,
-                 model->limit.bound);
+    if (band->signal >= 0) {
+        add_line(file, "band %s %.17g", signal_table[band->signal].name, band->bound);
     }
-    add_line(file, view->mark.set, "mark %.17g", view->mark.time);
+    if (limit->signal >= 0) {
+        add_line(file, "limit %s %.17g", signal_table[limit->signal].name, limit->bound);
+    }
+    if (view->mark.set) {
+        add_line(file, "mark %.17g", view->mark.time);
+    }
 }
 
 // A line that could not be typed could not be carried out again.
@@ -142,6 +176,14 @@ static status write_session(const explorer_model *model, const explorer_view *vi
                             f);
 }
 
+// What the session's file holds is saved.
+static void remember_saved(explorer_model *model, const char *path)
+{
+    snprintf(model->session_path, sizeof model->session_path, "%s", path);
+    model->saved_version = model_run_id(model);
+    model->kept_pins = model->pinned.pinned;
+}
+
 bool explorer_save_session(explorer_model *model, const explorer_view *view,
                            explorer_input *input, const char *path)
 {
@@ -150,13 +192,11 @@ bool explorer_save_session(explorer_model *model, const explorer_view *view,
         return act_refuse(input, "%.200s is there already: give the session another name",
                           path);
     }
-    if (!(act_need_whole_run(model, input) &&
-          act_succeeded(input, write_session(model, view, path, &input->fault)))) {
+    if (!act_need_whole_run(model, input) ||
+        !act_succeeded(input, write_session(model, view, path, &input->fault))) {
         return false;
     }
-    snprintf(model->session_path, sizeof model->session_path, "%s", path);
-    model->saved_version = model_run_id(model);
-    model->kept_pins = model->pinned.pinned;
+    remember_saved(model, path);
     if (strchr(path, '\'') != NULL) {
         return act_tell(input, "kept in %.200s", path);
     }
@@ -179,46 +219,89 @@ static status pin_kept(explorer_model *model, const kept_run *k, fault *f)
     return code;
 }
 
+// Computes and pins the other runs of a file.
+static status pin_all(explorer_model *model, const session_file *file, fault *f)
+{
+    for (int i = 1; i < file->run_count; i++) {
+        TRY(pin_kept(model, &file->runs[i], f));
+    }
+    return STATUS_OK;
+}
+
 // Takes what a file says, all of it or nothing.
 static bool take_session(explorer_model *model, explorer_view *view,
                          explorer_input *input, const session_file *file)
 {
-    session fresh;
-    const int before = model->pinned.count, baseline = model->pinned.baseline;
+    run_list *pins = &model->pinned;
+    const int before = pins->count, baseline = pins->baseline;
     if (before + file->run_count - 1 > PINNED_RUNS) {
         return act_refuse(
             input, "its %d pinned runs have no room beside the %d here: R drops some",
             file->run_count - 1, before);
     }
+    session fresh;
     fault *f = &input->fault;
     if (!act_succeeded(input, session_reopen(&fresh, &file->runs[0].from,
                                              model->session.patience, f))) {
         return false;
     }
-    status code = STATUS_OK;
-    for (int i = 1; i < file->run_count && code == STATUS_OK; i++) {
-        code = pin_kept(model, &file->runs[i], f);
-    }
+    status code = pin_all(model, file, f);
 
     // the baseline is the file's, else the one that was
-    const int kept = file->baseline >= 0 ? before + file->baseline : baseline;
-    if (kept < model->pinned.count) {
-        model->pinned.baseline = kept;
+    int kept = baseline;
+    if (file->baseline >= 0) {
+        kept = before + file->baseline;
+    }
+    if (kept < pins->count) {
+        pins->baseline = kept;
     } else {
-        model->pinned.baseline = model->pinned.count - 1;
+        pins->baseline = pins->count - 1;
     }
     if (code == STATUS_OK) {
         code = state_take_session(model, view, &fresh, f);
     }
-    if (code != STATUS_OK) {
-        while (model->pinned.count > before) {
-            run_list_drop(&model->pinned, model->pinned.count - 1);
-        }
-        model->pinned.baseline = baseline;
-        session_finish(&fresh);
-        return act_succeeded(input, code);
+    if (code == STATUS_OK) {
+        return true;
     }
-    return true;
+
+    // nothing of it stays
+    while (pins->count > before) {
+        run_list_drop(pins, pins->count - 1);
+    }
+    pins->baseline = baseline;
+    session_finish(&fresh);
+    return act_succeeded(input, code);
+}
+
+// Carries out the lines on how the runs are looked at; the first that fails is in
+// `failure`, which is empty if none does.
+static void look_as_kept(explorer_model *model, explorer_view *view,
+                         explorer_input *input, const session_file *file,
+                         line_function *look, message_line *failure)
+{
+    for (int i = 0; i < file->line_count; i++) {
+        if (!look(model, view, input, file->lines[i]) && failure->text[0] == '\0') {
+            *failure = input->message;
+        }
+    }
+}
+
+// Says what a session brought: what was wrong with it, else a run that fails, else how
+// much there is.
+static bool tell_session(const explorer_model *model, explorer_input *input,
+                         const char *path, const message_line *failure)
+{
+    act_clear_message(input);
+    if (failure->text[0] != '\0') {
+        return act_warn(input, "%.200s: %.400s", path, failure->text);
+    }
+    if (act_tell_failed_run(model, input)) {
+        return true;
+    }
+    const int changes = model->session.input_count, pins = model->pinned.count;
+    const char *plural = changes == 1 ? "" : "s", *pin_plural = pins == 1 ? "" : "s";
+    return act_tell(input, "%.200s: %d change%s, %d pinned run%s", path, changes, plural,
+                    pins, pin_plural);
 }
 
 bool explorer_resume_session(explorer_model *model, explorer_view *view,
@@ -228,32 +311,16 @@ bool explorer_resume_session(explorer_model *model, explorer_view *view,
     if (!act_succeeded(input, session_file_read(&file, path, &input->fault))) {
         return false;
     }
-
-    // then how they are looked at; a line that says nothing of that is told
     bool done = take_session(model, view, input, &file);
-    message_line said = {.text = ""};
-    for (int i = 0; i < file.line_count && done; i++) {
-        if (!look(model, view, input, file.lines[i]) && said.text[0] == '\0') {
-            said = input->message;
-        }
-    }
-    if (done && said.text[0] == '\0' && session_file_is_outdated(&file)) {
-        said = (message_line){
-            .text = "a file that a run reads has changed since it was kept"};
-    }
     if (done) {
-        snprintf(model->session_path, sizeof model->session_path, "%s", path);
-        model->saved_version = model_run_id(model);
-        model->kept_pins = model->pinned.pinned;
-        act_clear_message(input);
-        if (said.text[0] != '\0') {
-            done = act_warn(input, "%.200s: %.400s", path, said.text);
-        } else {
-            const int changes = model->session.input_count, pins = model->pinned.count;
-            done = act_tell_failed_run(model, input) ||
-                   act_tell(input, "%.200s: %d change%s, %d pinned run%s", path, changes,
-                            changes == 1 ? "" : "s", pins, pins == 1 ? "" : "s");
+        message_line failure = {.text = ""};
+        look_as_kept(model, view, input, &file, look, &failure);
+        if (failure.text[0] == '\0' && session_file_is_outdated(&file)) {
+            failure = (message_line){
+                .text = "a file that a run reads has changed since it was kept"};
         }
+        remember_saved(model, path);
+        done = tell_session(model, input, path, &failure);
     }
     session_file_finish(&file);
     return done;
