@@ -207,89 +207,128 @@ static status narrow_bracket(const arm *a, motion *m, event_function w, double s
     return motion_try_step(a, m, b->hi, STATE_WHOLE);
 }
 
+// An event function between two instants of a step, and where its crossing is guessed.
+typedef struct crossing_search {
+    double lo, v_lo, hi, v_hi; // [s], and in the function's unit
+    double guess;              // [s]
+} crossing_search;
+
+// Where a function is admissible at both ends only a dip in between can leave its side:
+// the search then ends at the dip, and *crosses is true. Else m->trial is the step's end.
+static status search_dip(const arm *a, motion *m, event_function w, crossing_search *in,
+                         bool *crosses)
+{
+    const double h = in->hi, tolerance = event_tolerance(w);
+    double dip = -1;
+    *crosses = false;
+    if (in->v_lo > 0 && in->v_hi > 0) {
+        dip = suspected_dip(a, m, h, w, in->v_lo, in->v_hi);
+    }
+    if (dip < 0) {
+        return STATUS_OK;
+    }
+
+    // the value at the dip decides
+    TRY(motion_try_step(a, m, dip * h, STATE_WHOLE));
+    in->v_hi = event_value(a, m, m->trial, w);
+    if (in->v_hi >= -tolerance) {
+        return motion_try_step(a, m, h, STATE_WHOLE);
+    }
+    in->hi = dip * h;
+    in->guess = 0.5 * in->hi;
+    *crosses = true;
+    return STATUS_OK;
+}
+
+// A function that starts at zero (a release, a break-away): halves the step until it is
+// clearly admissible. *closed and *v_closed get the first instant on the way that has a
+// gap closed beyond rounding.
+static status search_admissible(const arm *a, motion *m, event_function w, double beyond,
+                                crossing_search *in, double *closed, double *v_closed)
+{
+    double s = in->hi;
+    for (int i = 0; i < 20; i++) {
+        s /= 2;
+        TRY(motion_try_step(a, m, s, STATE_WHOLE));
+        const double v = event_value(a, m, m->trial, w);
+        if (v > 0) {
+            in->lo = s;
+            in->v_lo = v;
+            break;
+        }
+
+        in->hi = s;
+        in->v_hi = v;
+        if (v < beyond) {
+            *closed = s;
+            *v_closed = v;
+        }
+    }
+    in->guess = 0.5 * (in->lo + in->hi);
+    return STATUS_OK;
+}
+
+// An unresolved impact happens within its step: nothing is located inside its first part,
+// so that an event found there is put off to its end.
+static status leave_impact(const arm *a, motion *m, double h, double *found)
+{
+    const double least = fmin(h, UNRESOLVED_IMPACT * m->nominal_step);
+    const bool within =
+        m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && *found < least;
+    if (!within || !motion_unresolved(a, m)) {
+        return STATUS_OK;
+    }
+    *found = least;
+    return motion_try_step(a, m, least, STATE_WHOLE);
+}
+
 // Looks for the first instant in (0, end->length] at which `w` leaves its admissible
 // side; if there is one, *end and m->trial move there.
 static status search_interval(const arm *a, motion *m, event_function w, step_end *end)
 {
-    const double h = end->length;
-    double v0 = event_value(a, m, m->state, w), v1 = event_value(a, m, m->trial, w);
-    double guess = 0.5 * h;
-    if (v0 > 0 && v1 < 0) {
-        guess = h * guess_crossing(m, h, w, v0, v1);
+    const double h = end->length, tolerance = event_tolerance(w);
+    crossing_search in = {.hi = h,
+                          .v_lo = event_value(a, m, m->state, w),
+                          .v_hi = event_value(a, m, m->trial, w),
+                          .guess = 0.5 * h};
+    if (in.v_lo > 0 && in.v_hi < 0) {
+        in.guess = h * guess_crossing(m, h, w, in.v_lo, in.v_hi);
     }
-    double lo = 0, hi = h, tolerance = event_tolerance(w);
-
-    // admissible at the end: only a dip in between can matter
-    if (v1 >= -tolerance) {
-        double dip = -1;
-        if (v0 > 0 && v1 > 0) {
-            dip = suspected_dip(a, m, h, w, v0, v1);
-        }
-        if (dip < 0) {
+    if (in.v_hi >= -tolerance) {
+        bool crosses;
+        TRY(search_dip(a, m, w, &in, &crosses));
+        if (!crosses) {
             return STATUS_OK;
         }
-        status s = motion_try_step(a, m, dip * h, STATE_WHOLE);
-        v1 = event_value(a, m, m->trial, w);
-        if (s != STATUS_OK || v1 >= -tolerance) {
-            if (s == STATUS_OK) {
-                return motion_try_step(a, m, h, STATE_WHOLE);
-            }
-            return s;
-        }
-        hi = dip * h;
-        guess = 0.5 * hi;
     }
 
-    // it starts at zero (a release, a break-away): find where it is clearly admissible,
-    // and on the way where a gap is first found closed beyond rounding
-    const double beyond = fmin(v0, 0) - GAP_ROUNDING;
-    double closed = hi, v_closed = v1;
-    if (v0 <= tolerance) {
-        double s = hi;
-        for (int i = 0; i < 20; i++) {
-            s /= 2;
-            TRY(motion_try_step(a, m, s, STATE_WHOLE));
-            double v = event_value(a, m, m->trial, w);
-            if (v > 0) {
-                lo = s;
-                v0 = v;
-                break;
-            }
-            hi = s;
-            v1 = v;
-            if (v < beyond) {
-                closed = hi, v_closed = v;
-            }
-        }
-        guess = 0.5 * (lo + hi);
+    // from zero, to where it is admissible
+    const double beyond = fmin(in.v_lo, 0) - GAP_ROUNDING;
+    double closed = in.hi, v_closed = in.v_hi;
+    if (in.v_lo <= tolerance) {
+        TRY(search_admissible(a, m, w, beyond, &in, &closed, &v_closed));
     }
 
-    // narrowed to the width that time resolves; a gap that was nowhere found open closes
-    // where it exceeds its rounding: this ends flights too low to be told from rounding
-    // (after an impact that leaves the arm with hardly any force)
+    // a gap that was nowhere found open closes where it exceeds its rounding: this ends
+    // flights too low to be told from rounding (after an impact that leaves the arm with
+    // hardly any force)
     double edge = 0;
-    if (w == EVENT_OF_GAP && !(v0 > 0) && !m->wall_gives) {
+    if (w == EVENT_OF_GAP && !(in.v_lo > 0) && !m->wall_gives) {
         edge = beyond;
-        hi = closed;
-        v1 = v_closed;
-        guess = 0.5 * hi;
+        in.hi = closed;
+        in.v_hi = v_closed;
+        in.guess = 0.5 * closed;
     }
+
+    // narrowed to the width that time resolves
     end->any = true;
     end->first = w;
-    bracket between = {lo, v0 - edge, hi, v1 - edge, edge};
-    status s = narrow_bracket(a, m, w, guess, &between);
-    hi = between.hi;
-
-    // an unresolved impact happens within its step: nothing is located inside its first
-    // part
-    double least = fmin(h, UNRESOLVED_IMPACT * m->nominal_step);
-    bool within_impact =
-        m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
-    if (s == STATUS_OK && within_impact && motion_unresolved(a, m)) {
-        hi = least;
-        s = motion_try_step(a, m, hi, STATE_WHOLE);
+    bracket between = {in.lo, in.v_lo - edge, in.hi, in.v_hi - edge, edge};
+    status s = narrow_bracket(a, m, w, in.guess, &between);
+    end->length = between.hi;
+    if (s == STATUS_OK) {
+        s = leave_impact(a, m, h, &end->length);
     }
-    end->length = hi;
     return s;
 }
 

@@ -329,9 +329,16 @@ KERNEL int of_wall(real *block, taylor_form f, const int contact, const int hub_
 static int compute_series(double *block, taylor_form f)
 {
     real *lanes = (real *)block;
-    return f.hub_spring ? f.contact ? of_wall(lanes, f, 1, 1) : of_wall(lanes, f, 0, 1)
-           : f.contact ? of_wall(lanes, f, 1, 0)
-                        : of_wall(lanes, f, 0, 0);
+    if (f.hub_spring && f.contact) {
+        return of_wall(lanes, f, 1, 1);
+    }
+    if (f.hub_spring) {
+        return of_wall(lanes, f, 0, 1);
+    }
+    if (f.contact) {
+        return of_wall(lanes, f, 1, 0);
+    }
+    return of_wall(lanes, f, 0, 0);
 }
 
 #if LANES > 1

@@ -107,82 +107,103 @@ KERNEL void find_jacobian(stiff_step *s)
     }
 }
 
+// What the links beyond a joint answer, by the numbers P, p and tau of stiff_step.h, and
+// their weight [N].
+typedef struct links_beyond {
+    complex_lanes pxx, pxy, pyy, px, py, tau;
+    double weight;
+} links_beyond;
+
+// What the tip carries, and what slips along the wall with it.
+KERNEL links_beyond factor_tip(const stiff_step *s, complex_lanes g)
+{
+    const complex_lanes mass = number(s->tip_mass), slip = scaled(s->slip_damping, g);
+    return (links_beyond){
+        .pxx = plus(mass, scaled(s->along_x * s->along_x, slip)),
+        .pxy = plus(number(0), scaled(s->along_x * s->along_y, slip)),
+        .pyy = plus(mass, scaled(s->along_y * s->along_y, slip)),
+        .px = number(0),
+        .py = number(0),
+        .tau = number(0),
+        .weight = s->tip.weight,
+    };
+}
+
+// The row of link k, and what it shows with those beyond to the link before.
+KERNEL void factor_link(stiff_step *s, int k, complex_lanes g, complex_lanes g2,
+                        links_beyond *b)
+{
+    const stiff_link *l = &s->link[k];
+    const stiff_stage *at = &s->stage[s->first + k];
+    stiff_pivot *p = &s->pivot[k];
+    const bool has_joint = s->first + k > 0;
+    const double lc = l->length * s->body[k].c[HALF][LANE];
+    const double ls = l->length * s->body[k].s[HALF][LANE];
+    const double square = 0.25 * l->length * l->length;
+
+    // its mass, and the drag of a link at rest, which counts as a mass of g times its
+    // coefficients
+    link_force on_link = {0};
+    add_link_forces(&l->forces, s->amount, &(link_motion){0}, &on_link);
+    complex_lanes mass = number(l->mass), own = number(l->inertia + l->mass * square);
+    if (on_link.by_speed != 0) {
+        mass = plus(mass, scaled(on_link.by_speed, g));
+        own = plus(own, scaled(on_link.by_turn + on_link.by_speed * square, g));
+    }
+    own = plus(own, scaled(weight_by_angle(&l->forces, b->weight, ls), g2));
+    b->weight += l->forces.weight;
+
+    // with the links beyond: u and d
+    const complex_lanes ptx = minus(scaled(lc, b->pxy), scaled(ls, b->pxx));
+    const complex_lanes pty = minus(scaled(lc, b->pyy), scaled(ls, b->pxy));
+    complex_lanes d = plus(minus(scaled(lc, pty), scaled(ls, ptx)), plus(b->tau, own));
+    d = plus(d, minus(scaled(2 * lc, b->py), scaled(2 * ls, b->px)));
+    const complex_lanes ux = minus(plus(ptx, b->px), scaled(0.5 * ls, mass));
+    const complex_lanes uy = plus(plus(pty, b->py), scaled(0.5 * lc, mass));
+
+    // the joint before it, and the pivot
+    complex_lanes kappa = number(0);
+    double joint_damping = 0;
+    if (has_joint) {
+        const joint_force joint =
+            joint_forces(&l->forces, s->amount, at->q[HALF] - at[-1].q[HALF],
+                         at->w[HALF] - at[-1].w[HALF]);
+        joint_damping = joint.by_rate[LANE];
+        kappa = plus(scaled(joint.by_bend[LANE], g2), scaled(joint_damping, g));
+    }
+    const complex_lanes inv = inverse(plus(d, kappa)), share = times(kappa, inv);
+    *p = (stiff_pivot){.ux = ux,
+                       .uy = uy,
+                       .inverse = inv,
+                       .kappa = kappa,
+                       .share = share,
+                       .lc = lc,
+                       .ls = ls,
+                       .joint_damping = joint_damping,
+                       .drag = on_link.by_speed,
+                       .turning = on_link.by_turn};
+
+    // a first link without a joint is the hub's own
+    if (!has_joint) {
+        b->tau = d;
+        return;
+    }
+    b->pxx = plus(minus(b->pxx, times(ux, times(ux, inv))), mass);
+    b->pxy = minus(b->pxy, times(ux, times(uy, inv)));
+    b->pyy = plus(minus(b->pyy, times(uy, times(uy, inv))), mass);
+    b->px = times(ux, share);
+    b->py = times(uy, share);
+    b->tau = times(share, d);
+}
+
 // The links' rows, from the tip inwards; what they show to the hub, tau of stiff_step.h.
 KERNEL complex_lanes factor_links(stiff_step *s, complex_lanes g, complex_lanes g2)
 {
-    // what the tip carries, and what slips along the wall with it
-    const complex_lanes slip = scaled(s->slip_damping, g);
-    complex_lanes pxx = number(s->tip_mass), pxy = number(0), pyy = pxx;
-    pxx = plus(pxx, scaled(s->along_x * s->along_x, slip));
-    pxy = plus(pxy, scaled(s->along_x * s->along_y, slip));
-    pyy = plus(pyy, scaled(s->along_y * s->along_y, slip));
-    complex_lanes px = number(0), py = px, tau = px;
-    double carried = s->tip.weight;
-
+    links_beyond b = factor_tip(s, g);
     for (int k = s->links - 1; k >= 0; k--) {
-        const stiff_link *l = &s->link[k];
-        const stiff_stage *at = &s->stage[s->first + k];
-        stiff_pivot *p = &s->pivot[k];
-        const double lc = l->length * s->body[k].c[HALF][LANE];
-        const double ls = l->length * s->body[k].s[HALF][LANE];
-        const double square = 0.25 * l->length * l->length;
-
-        // its mass, and the drag of a link at rest, which counts as a mass of g times
-        // its coefficients
-        link_force on_link = {0};
-        add_link_forces(&l->forces, s->amount, &(link_motion){0}, &on_link);
-        complex_lanes mass = number(l->mass), own = number(l->inertia + l->mass * square);
-        if (on_link.by_speed != 0) {
-            mass = plus(mass, scaled(on_link.by_speed, g));
-            own = plus(own, scaled(on_link.by_turn + on_link.by_speed * square, g));
-        }
-        own = plus(own, scaled(weight_by_angle(&l->forces, carried, ls), g2));
-        carried += l->forces.weight;
-
-        // what the links beyond add
-        const complex_lanes ptx = minus(scaled(lc, pxy), scaled(ls, pxx));
-        const complex_lanes pty = minus(scaled(lc, pyy), scaled(ls, pxy));
-        complex_lanes d = plus(minus(scaled(lc, pty), scaled(ls, ptx)), plus(tau, own));
-        d = plus(d, minus(scaled(2 * lc, py), scaled(2 * ls, px)));
-        const complex_lanes ux = minus(plus(ptx, px), scaled(0.5 * ls, mass));
-        const complex_lanes uy = plus(plus(pty, py), scaled(0.5 * lc, mass));
-
-        // the joint before it
-        complex_lanes kappa = number(0);
-        double joint_damping = 0;
-        if (s->first + k > 0) {
-            const joint_force joint =
-                joint_forces(&l->forces, s->amount, at->q[HALF] - at[-1].q[HALF],
-                             at->w[HALF] - at[-1].w[HALF]);
-            joint_damping = joint.by_rate[LANE];
-            kappa = plus(scaled(joint.by_bend[LANE], g2), scaled(joint_damping, g));
-        } else {
-            tau = d; // the hub's own
-        }
-        const complex_lanes inv = inverse(plus(d, kappa)), share = times(kappa, inv);
-        *p = (stiff_pivot){ux,
-                           uy,
-                           inv,
-                           kappa,
-                           share,
-                           lc,
-                           ls,
-                           joint_damping,
-                           on_link.by_speed,
-                           on_link.by_turn};
-
-        // what both show to the link before
-        if (s->first + k > 0) {
-            pxx = plus(minus(pxx, times(ux, times(ux, inv))), mass);
-            pxy = minus(pxy, times(ux, times(uy, inv)));
-            pyy = plus(minus(pyy, times(uy, times(uy, inv))), mass);
-            px = times(ux, share);
-            py = times(uy, share);
-            tau = times(share, d);
-        }
+        factor_link(s, k, g, g2, &b);
     }
-
-    return tau;
+    return b.tau;
 }
 
 // The hub, whose back EMF works through the current.

@@ -219,78 +219,85 @@ KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip
     return true;
 }
 
-// How the wall acts at the stages: direction, lever and force.
+// How the wall meets the last link at the stages, and with which forces.
 typedef struct stiff_contact {
-    lanes ex, ey, lever, force, along; // along: against the slip along the wall
+    lanes ex, ey, lever; // as wall_contact of wall.h has them
+    lanes reach;         // J of the last link [m]
+    lanes bends;         // what velocities add to the depth's second derivative [m/s2]
+    lanes force, along;  // along: against the slip along the wall [N]
 } stiff_contact;
 
-// The wall: gap, rate and force (wall_contact_at of wall.h, for lanes).
-KERNEL stiff_contact press_wall(stiff_step *s, int half, bool account,
-                                const stiff_tip *tip)
+// The geometry of contact (wall_contact_at of wall.h, for lanes), the gap and its rate.
+KERNEL stiff_contact meet_wall(stiff_step *s, int half, const stiff_tip *tip)
 {
     const wall_model *wall = s->wall;
     const int last = s->links - 1;
     const double length = s->link[last].length;
     const lanes c = s->body[last].c[half], sn = s->body[last].s[half];
     const lanes w = s->stage[s->first + last].w[half];
+    stiff_contact at = {.lever = all(0)};
+
+    // seen from a wall that moves, the arm is shifted the other way
     const lanes comes = s->shift[1].half[half];
     const lanes px = tip->base_x - wall->sine * s->shift[0].half[half];
     const lanes py = tip->base_y + wall->cosine * s->shift[0].half[half];
-    stiff_contact at = {.lever = all(0)};
-    lanes depth, bends; // bends: what velocities add to the depth's second derivative
+    lanes depth;
     if (wall->kind == WALL_POINT) {
         const lanes dx = wall->x - px, dy = wall->y - py;
+        const lanes along_link = c * (tip->base_vx - wall->sine * comes) +
+                                 sn * (tip->base_vy + wall->cosine * comes);
         at.ex = -sn;
         at.ey = c;
         at.lever = c * dx + sn * dy - length;
         depth = sn * dx - c * dy;
-        bends = -depth * w * w - 2 * w *
-                                     (c * (tip->base_vx - wall->sine * comes) +
-                                      sn * (tip->base_vy + wall->cosine * comes));
+        at.bends = -depth * w * w - 2 * w * along_link;
     } else {
         at.ex = all(-wall->sine);
         at.ey = all(wall->cosine);
         depth = at.ex * (px + length * c) + at.ey * (py + length * sn);
-        bends = -length * w * w * (at.ex * c + at.ey * sn);
+        at.bends = -length * w * w * (at.ex * c + at.ey * sn);
     }
-    const lanes reach = at.lever + length * (c * at.ey - sn * at.ex);
-    const lanes along =
-        wall->cosine * at.ey - wall->sine * at.ex; // of the wall's normal, e
-    const lanes rate =
-        at.ex * tip->base_vx + at.ey * tip->base_vy + reach * w + comes * along;
+
+    at.reach = at.lever + length * (c * at.ey - sn * at.ex);
+    const lanes along = wall->cosine * at.ey - wall->sine * at.ex;
     s->gap.half[half] = -depth;
-    s->rate.half[half] = -rate;
-    if (s->contact == STIFF_FREE) {
-        at.force = at.along = s->force.half[half] = all(0);
-        s->wall_lost.half[half] = s->pushed.half[half] = all(0);
-        return at;
-    }
+    s->rate.half[half] =
+        -(at.ex * tip->base_vx + at.ey * tip->base_vy + at.reach * w + comes * along);
+    return at;
+}
+
+// The wall's forces on an arm in contact, and what they lose and work.
+KERNEL void press_wall(stiff_step *s, int half, bool account, const stiff_tip *tip,
+                       stiff_contact *at)
+{
+    const wall_model *wall = s->wall;
+    const lanes comes = s->shift[1].half[half];
+    const lanes slides = comes * (wall->sine * at->ey + wall->cosine * at->ex);
+    const wall_meeting meeting = {-s->gap.half[half], -s->rate.half[half],
+                                  at->ey * tip->vx - at->ex * tip->vy - slides};
+    const wall_answer answer = wall_forces(wall, s->amount, &meeting);
 
     // what a wall that gives answers, and what a face with a mass takes
-    const lanes slides =
-        s->shift[1].half[half] * (wall->sine * at.ey + wall->cosine * at.ex);
-    const wall_meeting meeting = {depth, rate,
-                                  at.ey * tip->vx - at.ex * tip->vy - slides};
-    const wall_answer answer = wall_forces(wall, s->amount, &meeting);
     if (s->contact == STIFF_GIVES) {
-        const lanes rate2 = at.ex * tip->base_ax + at.ey * tip->base_ay +
-                            reach * s->stage[s->first + last].a[half] + bends;
+        const lanes al = s->stage[s->dof - 1].a[half];
+        const lanes rate2 =
+            at->ex * tip->base_ax + at->ey * tip->base_ay + at->reach * al + at->bends;
         s->force.half[half] = answer.normal + wall->face_mass * rate2;
     }
-    at.force = s->force.half[half];
-    at.along = answer.along;
+    at->force = s->force.half[half];
+    at->along = answer.along;
+    if (!account) {
+        return;
+    }
 
     // the foundation of a face works on its spring and damper
-    if (account) {
-        const bool face = s->contact == STIFF_GIVES && wall->face_mass > 0;
-        lanes by = at.force;
-        if (face) {
-            by = answer.normal;
-        }
-        s->pushed.half[half] = by * comes * along - at.along * slides;
-        s->wall_lost.half[half] = answer.lost;
+    lanes by = at->force;
+    if (s->contact == STIFF_GIVES && wall->face_mass > 0) {
+        by = answer.normal;
     }
-    return at;
+    const lanes along = wall->cosine * at->ey - wall->sine * at->ex;
+    s->pushed.half[half] = by * comes * along - at->along * slides;
+    s->wall_lost.half[half] = answer.lost;
 }
 
 // From tip to hub: forces, and what each link's equation lacks; `size` is that of the
@@ -349,9 +356,16 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
     if (!sweep_outwards(s, half, account, &tip)) {
         return false;
     }
-    stiff_contact at = {zero, zero, zero, zero, zero};
+
+    // the wall, where there is one
+    stiff_contact at = {.lever = zero};
     if (wall_stands(s->wall)) {
-        at = press_wall(s, half, account, &tip);
+        at = meet_wall(s, half, &tip);
+    }
+    if (s->contact != STIFF_FREE) {
+        press_wall(s, half, account, &tip, &at);
+    } else if (wall_stands(s->wall)) {
+        s->force.half[half] = s->wall_lost.half[half] = s->pushed.half[half] = zero;
     }
 
     // forces on shapes, by the bends' rates
