@@ -256,8 +256,11 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out,
     double rate2 =
         at->ex * base.ax + at->ey * base.ay + last * out[N - 1] + at->convective;
     double force = c->pressed;
-    rate2 +=
-        c->face ? 0 : comes_faster; // the mass of a face feels the acceleration in space
+
+    // the mass of a face feels the acceleration in space
+    if (!c->face) {
+        rate2 += comes_faster;
+    }
     if (c->constrained) {
         const double yields = at->ex * base.bx + at->ey * base.by + last * end->unit;
         force = -rate2 / yields;
@@ -268,9 +271,16 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out,
         for (int k = 0; k < N; k++) {
             out[k] += force * c->link[k].unit;
         }
-        rate2 = c->face ? rate2 + force * yields : 0;
+        if (c->face) {
+            rate2 += force * yields;
+        } else {
+            rate2 = 0;
+        }
     }
-    rate2 += c->face ? comes_faster : 0;
+    if (c->face) {
+        rate2 += comes_faster;
+    }
+
     reaction->force = force;
     reaction->wall_work = -c->along * wall_slides(model, at->ex, at->ey);
     if (c->face) {
@@ -283,6 +293,39 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out,
     reaction->gap = wall_stands(model) ? -at->penetration : HUGE_VAL;
     reaction->gap_velocity =
         -(wall_penetration_rate(at, c->vx, c->vy, last, c->omega[N - 1]) + comes);
+}
+
+// Forces at the hub at its velocity [rad/s] and, where the current is a state of its own,
+// at that [A].
+KERNEL hub_force forces_at_hub(const arm *a, double w, double state)
+{
+    double current = 0;
+    if (a->motor.electric) {
+        current = motor_current(&a->motor, state, w);
+    }
+    hub_force f = {0};
+    add_hub_forces(&a->motor, w, current, &f);
+    return f;
+}
+
+// What the tip shows to the last link: its mass, the wall, and the forces on what it
+// carries.
+KERNEL beyond beyond_tip(const sweep *c)
+{
+    const arm *a = c->a;
+    const force_constants tip = force_constants_of_tip(a);
+    const link_motion moves = {.vx = tip_vx(c), .vy = tip_vy(c)};
+    const double ex = c->wall.ex, ey = c->wall.ey;
+    link_force f = {0};
+    add_link_forces(&tip, &a->amount, &moves, &f);
+    return (beyond){.pxx = a->tip_mass,
+                    .pyy = a->tip_mass,
+                    .qx = c->pressed * ex + c->along * ey + f.x,
+                    .qy = c->pressed * ey - c->along * ex + f.y,
+                    .ux2 = ex,
+                    .uy2 = ey,
+                    .end_x = moves.vx,
+                    .end_y = moves.vy};
 }
 
 void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
@@ -312,12 +355,7 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
     }
 
     // motor and sliding friction at the hub, and the joint there
-    double current = 0;
-    if (a->motor.electric) {
-        current = motor_current(&a->motor, mode.current, w[0]);
-    }
-    hub_force motor = {0};
-    add_hub_forces(&a->motor, w[0], current, &motor);
+    const hub_force motor = forces_at_hub(a, w[0], mode.current);
     double hub = -motor.torque + sliding;
     c.damping_power = shape_sizes(a, w, shape);
     c.hub_joint = -hub;
@@ -328,18 +366,7 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
     }
 
     // tip to hub: eliminate each link's acceleration
-    const force_constants tip = force_constants_of_tip(a);
-    const link_motion tip_moves = {.vx = tip_vx(&c), .vy = tip_vy(&c)};
-    link_force on_tip = {0};
-    add_link_forces(&tip, &a->amount, &tip_moves, &on_tip);
-    beyond b = {.pxx = a->tip_mass,
-                .pyy = a->tip_mass,
-                .qx = c.pressed * c.wall.ex + c.along * c.wall.ey + on_tip.x,
-                .qy = c.pressed * c.wall.ey - c.along * c.wall.ex + on_tip.y,
-                .ux2 = c.wall.ex,
-                .uy2 = c.wall.ey,
-                .end_x = tip_moves.vx,
-                .end_y = tip_moves.vy};
+    beyond b = beyond_tip(&c);
     for (int k = a->links - 1; k >= 0; k--) {
         eliminate(&c, k, &b);
     }

@@ -98,6 +98,45 @@ typedef struct beyond {
     double outer;              // torque of the joint beyond
 } beyond;
 
+// The first link turns with the hub: what that adds to its slope and its right side.
+static void add_hub(const arm *a, implicit_iterate *it, implicit_tangent t,
+                    double residual, double *pivot, double *right, double *right1)
+{
+    const double alpha = it->acceleration[0], omega = it->w[0];
+    *pivot += a->hub_inertia * t.beta + a->motor.damping * t.gamma;
+    *right -=
+        a->hub_inertia * alpha + a->motor.damping * omega - a->motor.torque - it->sliding;
+    if (it->stuck) {
+        it->excess = -residual - a->hub_inertia * alpha - a->motor.damping * omega +
+                     a->motor.torque;
+        *right = *right1 = 0;
+    }
+}
+
+// What link k, whose angle answers as L says, shows with those beyond to the link before:
+// px, py are its force on its base by its angle, kappa its joint's slope.
+static inline __attribute__((always_inline)) void show_before(const implicit_sweep *L,
+                                                              double mass, double px,
+                                                              double py, double kappa,
+                                                              beyond *b)
+{
+    b->pxx += mass - px * L->vx;
+    b->pxy -= px * L->vy;
+    b->pyx -= py * L->vx;
+    b->pyy += mass - py * L->vy;
+    b->hx = px * L->to_parent;
+    b->hy = py * L->to_parent;
+    b->fx += px * L->free;
+    b->fy += py * L->free;
+    b->ex += px * L->unit;
+    b->ey += py * L->unit;
+    b->gx = -kappa * L->vx;
+    b->gy = -kappa * L->vy;
+    b->yy = kappa * L->to_parent - kappa;
+    b->torque0 = kappa * L->free;
+    b->torque1 = kappa * L->unit;
+}
+
 // Eliminates the angle of link k, with what it lacks of its balance of torques about its
 // node.
 static inline __attribute__((always_inline)) void
@@ -143,15 +182,7 @@ eliminate_tangent(const arm *a, implicit_sweep *link, int k, implicit_iterate *i
     double right = -residual - l * (c * b->fy - s * b->fx) + b->torque0;
     double right1 = -lever - l * (c * b->ey - s * b->ex) + b->torque1;
     if (first + k == 0) {
-        // the first link turns with the hub
-        pivot += a->hub_inertia * t.beta + a->motor.damping * t.gamma;
-        right -= a->hub_inertia * alpha + a->motor.damping * omega - a->motor.torque -
-                 it->sliding;
-        if (it->stuck) {
-            it->excess = -residual - a->hub_inertia * alpha - a->motor.damping * omega +
-                         a->motor.torque;
-            right = right1 = 0;
-        }
+        add_hub(a, it, t, residual, &pivot, &right, &right1);
     }
 
     // the angle as a function of what comes before the link
@@ -162,23 +193,9 @@ eliminate_tangent(const arm *a, implicit_sweep *link, int k, implicit_iterate *i
     L->unit = right1 / pivot;
 
     // the answer of this link and all beyond it
-    const double px = m * half * L->zx + l * zpx + b->hx,
-                 py = m * half * L->zy + l * zpy + b->hy;
-    b->pxx += m - px * L->vx;
-    b->pxy -= px * L->vy;
-    b->pyx -= py * L->vx;
-    b->pyy += m - py * L->vy;
-    b->hx = px * L->to_parent;
-    b->hy = py * L->to_parent;
-    b->fx += px * L->free;
-    b->fy += py * L->free;
-    b->ex += px * L->unit;
-    b->ey += py * L->unit;
-    b->gx = -kappa * L->vx;
-    b->gy = -kappa * L->vy;
-    b->yy = kappa * L->to_parent - kappa;
-    b->torque0 = kappa * L->free;
-    b->torque1 = kappa * L->unit;
+    const double px = m * half * L->zx + l * zpx + b->hx;
+    const double py = m * half * L->zy + l * zpy + b->hy;
+    show_before(L, m, px, py, kappa, b);
     b->outer = inner;
 }
 
@@ -190,12 +207,17 @@ static void substitute_tangent(const arm *a, const implicit_sweep *link, bool st
     for (int k = 0; k < a->links; k++) {
         const implicit_sweep *L = &link[k];
         const int i = a->first + k;
-        const bool fixed = i == 0 && stuck; // a stuck hub stays
-        const double parent = i > 0 ? dq[i - 1] : 0, parent1 = i > 0 ? unit[i - 1] : 0;
-        const double d =
-            fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
-        const double d1 =
-            fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
+        double parent = 0, parent1 = 0;
+        if (i > 0) {
+            parent = dq[i - 1];
+            parent1 = unit[i - 1];
+        }
+
+        double d = L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
+        double d1 = L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
+        if (i == 0 && stuck) { // a stuck hub stays
+            d = d1 = 0;
+        }
         dq[i] = d;
         unit[i] = d1;
         ax += a->link_length * L->zx * d;

@@ -322,8 +322,10 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
 // Each form has loops of its own.
 KERNEL int of_wall(real *block, taylor_form f, const int contact, const int hub_spring)
 {
-    return f.point ? series(block, contact, 1, hub_spring, f.damped)
-                   : series(block, contact, 0, hub_spring, f.damped);
+    if (f.point) {
+        return series(block, contact, 1, hub_spring, f.damped);
+    }
+    return series(block, contact, 0, hub_spring, f.damped);
 }
 
 static int compute_series(double *block, taylor_form f)

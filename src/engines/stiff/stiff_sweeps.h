@@ -138,14 +138,18 @@ KERNEL void follow_current(stiff_step *s)
     const double volts = m->gain * m->voltage;
     if (s->drive != STIFF_FLOWS) {
         for (int half = 0; half < STIFF_HALVES; half++) {
-            s->current.half[half] =
-                s->drive == STIFF_LIMITED
-                    ? all(s->limited)
-                    : (volts - m->back_emf * s->stage[0].w[half]) / m->resistance;
+            if (s->drive == STIFF_LIMITED) {
+                s->current.half[half] = all(s->limited);
+            } else {
+                s->current.half[half] =
+                    (volts - m->back_emf * s->stage[0].w[half]) / m->resistance;
+            }
             s->current_rate.half[half] = all(0);
         }
         return;
     }
+
+    // through an inductance
     stiff_nodes drives;
     for (int half = 0; half < STIFF_HALVES; half++) {
         drives.half[half] =
@@ -387,11 +391,22 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
     stiff_stage *hub = &s->stage[0];
     hub_force f = {.torque = s->hub_inertia * hub->a[half]};
     add_hub_forces(s->motor, hub->w[half], s->current.half[half], &f);
-    lanes r = f.torque + (s->first > 0 ? -outer : hub->r[half]);
+    lanes r = f.torque;
+    if (s->first > 0) {
+        r -= outer;
+    } else {
+        r += hub->r[half];
+    }
     for (int i = 0; i < s->modes && s->first > 0; i++) {
         r += s->mode[i * s->dof] * size[i];
     }
-    hub->r[half] = s->stuck ? zero : r + s->friction;
+
+    // a stuck hub has no equation: what it lacks is what friction holds
+    if (s->stuck) {
+        hub->r[half] = zero;
+    } else {
+        hub->r[half] = r + s->friction;
+    }
     if (account) {
         s->hold.half[half] = r;
         s->lost.half[half] = tip.lost;
@@ -406,6 +421,9 @@ static bool residual(stiff_step *s, bool account)
     if (s->drive != STIFF_DIRECT) {
         follow_current(s);
     }
-    return account ? sweep(s, 0, true) && sweep(s, 1, true)
-                   : sweep(s, 0, false) && sweep(s, 1, false);
+    // each form has a sweep of its own
+    if (account) {
+        return sweep(s, 0, true) && sweep(s, 1, true);
+    }
+    return sweep(s, 0, false) && sweep(s, 1, false);
 }
