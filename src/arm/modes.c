@@ -57,19 +57,57 @@ static double line_angle(const arm *a, tip_end tip)
     return a->held_angle;
 }
 
+// The balance of moments behind the hub at angles q[dof] under this share of the weight
+// and the tip's force: what it lacks into change[dof - 1], its derivatives into
+// matrix[size * size], both zeroed before. Of a pinned tip the last row and column are
+// the line's that it stays on.
+static void sag_equations(const arm *a, tip_end tip, const double *q, double force,
+                          double share, int size, double *matrix, double *change)
+{
+    const double line = line_angle(a, tip);
+    const int last = size - 1;
+    for (int k = 1; k < a->dof; k++) {
+        const int own = k - 1, link = k - a->first;
+        const double length = arm_link_of(a, link).length;
+        const double weight = chain_weight(a, link) * share;
+        const double reach = length * inline_cos(q[k] - line);
+        const double aside = length * inline_sin(q[k] - line);
+        const force_constants constants = force_constants_of(a, link);
+        const joint_force joint =
+            joint_forces(&constants, &a->amount, q[k] - q[k - 1], 0);
+
+        // the link's own balance
+        change[own] -= joint.torque + weight * inline_cos(q[k]) + force * reach;
+        matrix[own * size + own] +=
+            joint.by_bend - weight * inline_sin(q[k]) - force * aside;
+
+        // the joint's part in that of the body before
+        if (own > 0) {
+            change[own - 1] += joint.torque;
+            matrix[(own - 1) * size + own - 1] += joint.by_bend;
+            matrix[(own - 1) * size + own] -= joint.by_bend;
+            matrix[own * size + own - 1] -= joint.by_bend;
+        }
+        if (tip == TIP_PINNED) {
+            matrix[own * size + last] = matrix[last * size + own] = reach;
+            change[last] -= aside;
+        }
+    }
+}
+
 status modes_sag(const arm *a, tip_end tip, double *q, double *force)
 {
     enum { LOADS = 8, ITERATIONS = 40 };
-    const double line = line_angle(a, tip);
-    const int n = a->dof, size = n - 1 + (tip == TIP_PINNED), last = size - 1;
+    const int n = a->dof, size = n - 1 + (tip == TIP_PINNED ? 1 : 0);
+    const size_t numbers = (size_t)(size * (size + 1));
     *force = 0;
     for (int k = 0; k < n; k++) {
-        q[k] = line;
+        q[k] = line_angle(a, tip);
     }
     if (a->amount.gravity == 0 || size < 1 || (tip == TIP_PINNED && n - a->first < 2)) {
         return STATUS_OK;
     }
-    double *matrix = malloc((size_t)(size * (size + 1)) * sizeof *matrix);
+    double *matrix = malloc(numbers * sizeof *matrix);
     if (matrix == NULL) {
         return STATUS_NO_MEMORY;
     }
@@ -81,30 +119,8 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
     for (int load = 1; load <= LOADS && found; load++) {
         most = 1;
         for (int i = 0; i < ITERATIONS && found && most > 1e-13; i++) {
-            memset(matrix, 0, (size_t)(size * (size + 1)) * sizeof *matrix);
-            for (int k = 1; k < n; k++) {
-                const int own = k - 1, link = k - a->first;
-                const arm_link is = arm_link_of(a, link);
-                const double bend = q[k] - q[k - 1], s = inline_sin(q[k] - line);
-                const force_constants constants = force_constants_of(a, link);
-                const joint_force joint = joint_forces(&constants, &a->amount, bend, 0);
-                const double torque = joint.torque, slope = joint.by_bend;
-                const double weight = chain_weight(a, link) * load / LOADS;
-                const double reach = is.length * inline_cos(q[k] - line);
-                change[own] -= torque + weight * inline_cos(q[k]) + *force * reach;
-                matrix[own * size + own] +=
-                    slope - weight * inline_sin(q[k]) - *force * is.length * s;
-                if (own > 0) {
-                    change[own - 1] += torque;
-                    matrix[(own - 1) * size + own - 1] += slope;
-                    matrix[(own - 1) * size + own] = matrix[own * size + own - 1] =
-                        -slope;
-                }
-                if (tip == TIP_PINNED) {
-                    matrix[own * size + last] = matrix[last * size + own] = reach;
-                    change[last] -= is.length * s;
-                }
-            }
+            memset(matrix, 0, numbers * sizeof *matrix);
+            sag_equations(a, tip, q, *force, (double)load / LOADS, size, matrix, change);
             found = dense_solve(size, matrix, change);
             most = 0;
             for (int k = 1; k < n && found; k++) {
@@ -112,7 +128,7 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
                 most = fmax(most, fabs(change[k - 1]));
             }
             if (tip == TIP_PINNED) {
-                *force += change[last];
+                *force += change[size - 1];
             }
         }
         found = found && most < 1e-9;

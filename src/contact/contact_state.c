@@ -103,6 +103,23 @@ static double rounding_after(const arm *a, const motion *m, motion_event event)
     return FORCE_TOLERANCE * (1 + beyond) + motion_face_rounding(a, m);
 }
 
+// How many of the states that are tried first are taken even if rounding makes them look
+// worse, of as many choices of friction: the state that the event has ended would be
+// violated an instant later, and these are its successors.
+static int preferred_states(motion_event event, int choices)
+{
+    if (event == MOTION_RELEASE || event == MOTION_TOUCH) {
+        return choices;
+    }
+    if (event == MOTION_SLIP) {
+        return 2;
+    }
+    if (event == MOTION_STICK) {
+        return 1;
+    }
+    return 0;
+}
+
 void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
 {
     double *state = m->state;
@@ -117,23 +134,12 @@ void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
     int choices = hub_rests ? 3 : 1;
     int ways = touching && !m->wall_gives ? 2 : 1;
 
-    // the state that the event has ended would be violated an instant later: its
-    // successor is taken even if rounding makes it look worse
-    int preferred;
-    if (event == MOTION_RELEASE || event == MOTION_TOUCH) {
-        preferred = choices;
-    } else if (event == MOTION_SLIP) {
-        preferred = 2;
-    } else if (event == MOTION_STICK) {
-        preferred = 1;
-    } else {
-        preferred = 0;
-    }
+    // at a release the released arm is tried first, else the one in contact
+    const int preferred = preferred_states(event, choices);
     const double rounding = rounding_after(a, m, event);
     double least = 0;
     contact_state best = {false, sliding}, tried = best;
 
-    // at a release the released arm is tried first, else the one in contact
     for (int i = 0; i < ways * choices; i++) {
         bool second = i >= choices;
         state[SLOT_CONTACT] =

@@ -62,8 +62,12 @@ static void put_inputs(const arm *a, const motion *m, const double *q, const dou
     block[AT_START_VELOCITY + 1] = w[a->first];
     block[AT_START_VELOCITY + 2] = w[a->first + 1];
     block[AT_WANTED] = wanted;
-    const bool jumped = state_kept(m, m->state)[KEPT_JUMPED] != 0;
-    block[AT_EDGE_RATE] = jumped ? EDGE_RATE * motion_rounding_at(a, m->dof, q, w) : -1;
+
+    // none where nothing has jumped
+    block[AT_EDGE_RATE] = -1;
+    if (state_kept(m, m->state)[KEPT_JUMPED] != 0) {
+        block[AT_EDGE_RATE] = EDGE_RATE * motion_rounding_at(a, m->dof, q, w);
+    }
 }
 
 // The length that is tried from velocities w on, up to `most`.
@@ -77,10 +81,11 @@ static double wanted_step(const arm *a, const double *w, double most)
         larger(fabs(second - first), fabs(w[0])); // the bend turns, too
     const double rate =
         larger(1.2 * larger(links, turning), larger(a->highest_frequency, 1e-3));
-    double wanted = LONGEST_REACH / rate;
-    wanted = most < wanted ? most : wanted;
-    return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay
-                                                     : wanted;
+    const double wanted = smaller(most, LONGEST_REACH / rate);
+    if (a->fastest_decay * wanted > LONGEST_DECAY) {
+        return LONGEST_DECAY / a->fastest_decay;
+    }
+    return wanted;
 }
 
 // Records in the state the step that begins there, at most `most` [s] long.
@@ -133,9 +138,10 @@ static double longest_step(motion *m, double remaining)
     }
     const double before = kept[KEPT_LENGTH], ahead = kept[KEPT_WANTED] - kept[KEPT_USED];
     const bool same = m->state[SLOT_JUMPED] == 0 && before > 0;
-    return same && fabs(ahead - remaining) > LEAST_LEFT * remaining
-               ? larger(2 * before, remaining)
-               : remaining;
+    if (same && fabs(ahead - remaining) > LEAST_LEFT * remaining) {
+        return larger(2 * before, remaining);
+    }
+    return remaining;
 }
 
 // Continues in the state's step, whose series may be to be computed again.
@@ -180,7 +186,10 @@ static double length_of_step(const arm *a, const taylor_lane *lane)
     double sine, cosine;
     inline_sincos(*q, &sine, &cosine);
     const double left = fabs(cosine * a->wall.cosine + sine * a->wall.sine);
-    return turn > LONGEST_TURN * left ? allowed * (LONGEST_TURN * left / turn) : allowed;
+    if (turn > LONGEST_TURN * left) {
+        return allowed * (LONGEST_TURN * left / turn);
+    }
+    return allowed;
 }
 
 static double taylor_advance(const arm *a, motion *m, double remaining, double step)

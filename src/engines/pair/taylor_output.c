@@ -185,7 +185,9 @@ static void prepare_event_function(const arm *a, const motion *m, taylor_integra
         set_polynomial(p, taylor_term(lane, AT_GAP), spacing, order + 2, 1);
         const bool inside =
             p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
-        p->terms[0] = inside ? 0 : p->terms[0];
+        if (inside) {
+            p->terms[0] = 0;
+        }
         if (jumped || inside) {
             const double lacking =
                 EDGE_RATE * (1 + LEFT_OUT * (rounding_of(a, m, s) - 1));
@@ -207,8 +209,9 @@ static void prepare_event_function(const arm *a, const motion *m, taylor_integra
         set_polynomial(&s->far_limit, hold, spacing, order, sign);
         p->terms[0] += stiction;
         s->far_limit.terms[0] += stiction;
-        p->terms[0] =
-            jumped && fabs(p->terms[0]) <= EDGE_VALUE ? EDGE_VALUE : p->terms[0];
+        if (jumped && fabs(p->terms[0]) <= EDGE_VALUE) {
+            p->terms[0] = EDGE_VALUE;
+        }
     }
 }
 
@@ -227,13 +230,20 @@ value_and_slope taylor_event_function(const arm *a, const motion *m, event_funct
     const taylor_integrator *s = m->memory;
     const polynomial *p = function(a, m, w);
     const double t = s->used + h;
-    value_and_slope near = t > 0 ? value_and_slope_at(p->terms, p->count, t)
-                                 : (value_and_slope){p->terms[0], p->terms[1]};
+    value_and_slope near = {p->terms[0], p->terms[1]};
+    if (t > 0) {
+        near = value_and_slope_at(p->terms, p->count, t);
+    }
     if (w != EVENT_OF_STICTION) {
         return near;
     }
+
+    // stiction has a limit either way
     value_and_slope far = value_and_slope_at(s->far_limit.terms, s->far_limit.count, t);
-    return near.value < far.value ? near : far;
+    if (near.value < far.value) {
+        return near;
+    }
+    return far;
 }
 
 double taylor_second_derivative(const arm *a, const motion *m, event_function w,
@@ -259,8 +269,10 @@ bool taylor_excludes_event(const motion *m, event_function w)
     // it is above zero from the start, or rises from it, and stays above zero over the
     // whole step
     const taylor_integrator *s = m->memory;
-    const bool wall = w == EVENT_OF_GAP || w == EVENT_OF_FORCE;
-    return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > 0;
+    if (w == EVENT_OF_GAP || w == EVENT_OF_FORCE) {
+        return s->lane.block[AT_WALL_LEAST] > 0;
+    }
+    return s->lane.block[AT_HUB_LEAST] > 0;
 }
 
 // The root of an event function that the series' kernel has found, since the step's
@@ -268,11 +280,13 @@ bool taylor_excludes_event(const motion *m, event_function w)
 // not found it.
 static double known_root(const taylor_integrator *s, int place, bool clear)
 {
-    const double root = s->lane.block[place] - s->used;
     if (clear) {
         return HUGE_VAL;
     }
-    return s->lane.block[place] > 0 ? root : -1;
+    if (s->lane.block[place] > 0) {
+        return s->lane.block[place] - s->used;
+    }
+    return -1;
 }
 
 void taylor_first_event(const arm *a, motion *m, step_end *end)

@@ -217,8 +217,11 @@ double stiff_second_derivative(const arm *a, const motion *m, event_function w,
     const stiff_integrator *s = m->memory;
     const double length = s->step.length;
     const double x0 = (s->used + from) / length, x1 = (s->used + to) / length;
-    const stiff_function *f =
-        s->used > 0 && w == EVENT_OF_FORCE ? &s->force : &s->function[w];
+    const stiff_function *f = &s->function[w];
+    if (s->used > 0 && w == EVENT_OF_FORCE) {
+        f = &s->force;
+    }
+
     double most = function_curvature(f, x0, x1);
     if (w >= EVENT_OF_STICTION) {
         most = larger(most, function_curvature(&s->far[w], x0, x1));
@@ -251,8 +254,10 @@ void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from
             at[i] = (value_and_slope){hub.q, hub.w};
         } else if (of == OUTPUT_GAP && !wall_stands(&a->wall)) {
             at[i] = (value_and_slope){HUGE_VAL, 0};
+        } else if (of == OUTPUT_GAP) {
+            at[i] = by_time(s, function_at(&s->gap, x));
         } else {
-            at[i] = by_time(s, function_at(of == OUTPUT_GAP ? &s->gap : &s->force, x));
+            at[i] = by_time(s, function_at(&s->force, x));
         }
     }
 }

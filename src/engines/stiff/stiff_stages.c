@@ -120,24 +120,44 @@ void stiff_set_start(stiff_integrator *integrator, motion *m)
 
 // --- Newton ----------------------------------------------------------------------------
 
-bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
-                        double ratio, double *rate)
+// How much the accelerations of the step before say of those at each stage, as its
+// polynomial has them at `offset` + `ratio` c of its length.
+static void weights_of_last_step(double offset, double ratio,
+                                 double weight[RADAU_STAGES][RADAU_LANES])
 {
-    stiff_step *s = &integrator->step;
-    _Alignas(32) double weight[RADAU_STAGES][RADAU_LANES] = {{0}};
-    for (int i = 0; i < RADAU_STAGES && !fresh; i++) {
+    for (int i = 0; i < RADAU_STAGES; i++) {
         double value[RADAU_LANES];
         radau_values_at(smaller(offset + ratio * radau_node[i], FARTHEST), value);
         for (int j = 0; j < RADAU_STAGES; j++) {
             weight[j][i] = value[j];
         }
     }
-    for (int i = 0; i < RADAU_LANES && wall_moves(s->wall); i++) {
-        const double part = i < RADAU_STAGES ? radau_node[i] : 0;
-        const wall_shift at =
-            wall_motion_at(&s->wall->motion, s->time + part * s->length);
+}
+
+// Where a wall that moves is at the stages and, in the last lane, at the start.
+static void place_wall(stiff_step *s)
+{
+    for (int i = 0; i < RADAU_LANES; i++) {
+        double instant = s->time;
+        if (i < RADAU_STAGES) {
+            instant += radau_node[i] * s->length;
+        }
+        const wall_shift at = wall_motion_at(&s->wall->motion, instant);
         s->shift[0].at[i] = at.place;
         s->shift[1].at[i] = at.velocity;
+    }
+}
+
+bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
+                        double ratio, double *rate)
+{
+    stiff_step *s = &integrator->step;
+    _Alignas(32) double weight[RADAU_STAGES][RADAU_LANES] = {{0}};
+    if (!fresh) {
+        weights_of_last_step(offset, ratio, weight);
+    }
+    if (wall_moves(s->wall)) {
+        place_wall(s);
     }
     integrator->loops->predict(s, stiff_accelerations(integrator),
                                stiff_force(integrator), weight[0]);
@@ -153,25 +173,25 @@ bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
         if (i == 0) {
             integrator->loops->factor(s);
         }
-        const double now = integrator->loops->correct(s),
-                     theta = i > 0 ? now / before : *rate;
+        const double now = integrator->loops->correct(s);
         if (!(now < 1e3 * (1 + scale))) {
             return false;
         }
+
+        // the first correction is judged by the rate of the step before
+        double theta = *rate, left = now * theta;
         if (i > 0) {
+            theta = now / before;
+            left = now * theta / (1 - theta);
             *rate = smaller(larger(theta, LEAST_RATE), 0.5);
         }
-        if (i == 0 && now * theta < wanted) {
+        const bool converges = i == 0 || theta < 1;
+        if ((converges && left < wanted) || now < LEAST_SHARE * scale) {
             return true;
         }
-        if (i > 0 && theta < 1 && now * theta / (1 - theta) < wanted) {
-            return true;
-        }
-        if (now < LEAST_SHARE * scale) {
-            return true;
-        }
-        if (i > 1 &&
-            theta > SLOW_RATE) { // as near as the angles' last digits let it come
+
+        // slow where it is as near as the angles' last digits let it come
+        if (i > 1 && theta > SLOW_RATE) {
             const double rounding =
                 LAST_DIGITS * stiff_momentum(integrator, s->q0) / s->length;
             return now < smaller(rounding, MOST_LEFT * wanted);
