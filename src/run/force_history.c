@@ -248,12 +248,13 @@ double force_largest_mean(const run_result *result, double from, double window)
         // at the instant itself, impulses on both edges counting
         advance(result, &front, time, 0, true);
         advance(result, &back, time, window, false);
-        const double passed =
-            time < end ? holds_no_more(result, &front, &back, window, largest, &bounded)
-                       : time;
-        if (passed > time) {
-            time = fmin(passed, end);
-            continue;
+        if (time < end) {
+            const double passed =
+                holds_no_more(result, &front, &back, window, largest, &bounded);
+            if (passed > time) {
+                time = fmin(passed, end);
+                continue;
+            }
         }
         largest = fmax(largest, integral_to(result, &front, time) -
                                     integral_to(result, &back, time - window));

@@ -216,71 +216,31 @@ void recording_finish_summary(recording *r, double force_integral)
 
 void recording_add_rig_signals(const recording *r, sample *row)
 {
+    // before the first sample nothing is known
+    const double none = (double)NAN;
+    sensor_reading reading = {none, none, none, none, none, none};
+    row->command = row->controller_mode = none;
+    row->desired_angle = row->desired_velocity = none;
+    row->calculated_force = row->predicted_force = none;
+
+    // what the controller made of what the sensors read
     const shown_sample *s = &r->shown;
-
-    // what the sensors read; before their first sample nothing
     if (s->sampled) {
-        row->encoder = s->reading.encoder;
-    } else {
-        row->encoder = (double)NAN;
-    }
-    if (s->sampled) {
-        row->tachometer = s->reading.tachometer;
-    } else {
-        row->tachometer = (double)NAN;
-    }
-    if (s->sampled) {
-        row->force_reading = s->reading.force_reading;
-    } else {
-        row->force_reading = (double)NAN;
-    }
-    if (s->sampled) {
-        row->piezo_force = s->reading.piezo_force;
-    } else {
-        row->piezo_force = (double)NAN;
-    }
-    if (s->sampled) {
-        row->film = s->reading.film;
-    } else {
-        row->film = (double)NAN;
-    }
-    if (s->sampled) {
-        row->accelerometer = s->reading.accelerometer;
-    } else {
-        row->accelerometer = (double)NAN;
-    }
-
-    // what the controller made of it
-    if (s->sampled) {
+        reading = s->reading;
         row->command = s->output.command;
-    } else {
-        row->command = (double)NAN;
-    }
-    if (s->sampled) {
         row->controller_mode = s->output.mode;
-    } else {
-        row->controller_mode = (double)NAN;
-    }
-    if (s->sampled) {
         row->desired_angle = s->output.desired_angle;
-    } else {
-        row->desired_angle = (double)NAN;
-    }
-    if (s->sampled) {
         row->desired_velocity = s->output.desired_velocity;
-    } else {
-        row->desired_velocity = (double)NAN;
-    }
-    if (s->sampled) {
         row->calculated_force = s->output.calculated_force;
-    } else {
-        row->calculated_force = (double)NAN;
-    }
-    if (s->sampled) {
         row->predicted_force = s->predicted_force;
-    } else {
-        row->predicted_force = (double)NAN;
     }
+
+    row->encoder = reading.encoder;
+    row->tachometer = reading.tachometer;
+    row->force_reading = reading.force_reading;
+    row->piezo_force = reading.piezo_force;
+    row->film = reading.film;
+    row->accelerometer = reading.accelerometer;
 }
 
 bool recording_has_new_sample(const recording *r)

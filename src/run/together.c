@@ -87,7 +87,7 @@ static bool needs_series(side_run *one)
 
 // Continues with a run, what came last having come to `failed`, until it waits for series
 // that can be computed together with others'. False if it is over: it is closed then.
-static bool go_on(side_by_side *group, int place, status failed)
+static bool continue_run(side_by_side *group, int place, status failed)
 {
     side_run *one = &group->in_hand[place];
     bool ended = false;
@@ -135,7 +135,7 @@ static void fetch_run(const side_run *one)
 }
 
 // Begins runs in a free place until one waits there for its series, or none is left.
-static void begin_next(side_by_side *group, int place)
+static void fill_place(side_by_side *group, int place)
 {
     side_run *one = &group->in_hand[place];
     bool waits = false;
@@ -150,18 +150,15 @@ static void begin_next(side_by_side *group, int place)
         }
 
         // the next corrected run, up to its first wait
-        waits = go_on(group, place, begin_run(one, s, &group->options, result));
+        waits = continue_run(group, place, begin_run(one, s, &group->options, result));
     }
 }
 
-// Takes as many of those that wait as fit into the vectors and are of the form that most
-// of the first few have, computes their series, and lets them make their steps.
-static void serve(side_by_side *group)
+// The kind that most share, of those of the first in the queue; one that fills the
+// vectors is enough.
+static int most_common_kind(const side_by_side *group, int width)
 {
     enum { LOOKED_AT = 4 };
-    const int width = taylor_width();
-
-    // the kind that most share, of those of the first in the queue
     int kind = group->in_hand[group->waiting[0]].kind;
     for (int i = 1;
          i < group->waiting_count && i < LOOKED_AT && group->alike[kind] < width; i++) {
@@ -170,6 +167,15 @@ static void serve(side_by_side *group)
             kind = other;
         }
     }
+    return kind;
+}
+
+// Takes as many of those that wait as fit into the vectors and are of the form that most
+// of the first few have, computes their series, and lets them make their steps.
+static void step_together(side_by_side *group)
+{
+    const int width = taylor_width();
+    const int kind = most_common_kind(group, width);
 
     // out of the queue, whose order stays
     taylor_lane *lanes[TAYLOR_WIDEST];
@@ -207,8 +213,9 @@ static void serve(side_by_side *group)
     // then each continues by itself or makes room
     for (int i = 0; i < count; i++) {
         side_run *one = &group->in_hand[chosen[i]];
-        if (!go_on(group, chosen[i], arm_run_step(&one->run, HUGE_VAL, &one->fault))) {
-            begin_next(group, chosen[i]);
+        if (!continue_run(group, chosen[i],
+                          arm_run_step(&one->run, HUGE_VAL, &one->fault))) {
+            fill_place(group, chosen[i]);
         }
     }
 }
@@ -257,10 +264,10 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
     group->next = group->waiting_count = 0;
     memset(group->alike, 0, sizeof group->alike);
     for (int place = 0; place < IN_HAND; place++) {
-        begin_next(group, place);
+        fill_place(group, place);
     }
     while (group->waiting_count > 0) {
-        serve(group);
+        step_together(group);
     }
 
     // nobody can say whose time it was

@@ -322,9 +322,12 @@ void reader_group(reader *r, const tree_node *map, const char *group)
             continue;
         }
         char list[PARAMETER_TEXT_SIZE];
-        const char *text = parameter_table[index].type == PARAMETER_LIST
-                               ? list_text(r, child, index, list)
-                               : reader_value_text(r, child, path);
+        const char *text;
+        if (parameter_table[index].type == PARAMETER_LIST) {
+            text = list_text(r, child, index, list);
+        } else {
+            text = reader_value_text(r, child, path);
+        }
         if (text != NULL &&
             parameter_set_text(&r->s->parameters, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);

@@ -61,9 +61,8 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
         if (parameter_may_change(&scratch, index, &f) != STATUS_OK ||
             parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
-
-            // in force from the instant on, or from the start
         } else if (timed) {
+            // in force from the instant on
             action a = action_of(time, &scratch, index, text);
             a.line = child->line;
             if (index == PARAMETER_INDEX(control.lock)) {
@@ -108,7 +107,7 @@ static bool parse_time(reader *r, const tree_node *node, double *time)
 
 // Finds the time of an action and what it does; NULL for what is missing.
 static void find_action_parts(reader *r, const tree_node *map, const tree_node **at,
-                              const tree_node **deed)
+                              const tree_node **effect)
 {
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, map, child);
@@ -125,20 +124,20 @@ static void find_action_parts(reader *r, const tree_node *map, const tree_node *
             char hint[HINT_TEXT];
             report_node(r, child->key, "unknown key '%.60s' in an action%s", key,
                         did_you_mean(hint, near, ", expected at, set or push"));
-        } else if (*deed != NULL) {
+        } else if (*effect != NULL) {
             report_node(r, child->key,
                         "'%s' after '%s' in one action, expected one of them (begin a "
                         "new '- at:')",
-                        key, (*deed)->key->text);
+                        key, (*effect)->key->text);
         } else {
-            *deed = child;
+            *effect = child;
         }
     }
 }
 
 static void parse_action(reader *r, const tree_node *map)
 {
-    const tree_node *at = NULL, *deed = NULL;
+    const tree_node *at = NULL, *effect = NULL;
     double time = 0;
     if (!reader_expect_map(r, map, "an action", "at: 0.4 s")) {
         return;
@@ -146,19 +145,19 @@ static void parse_action(reader *r, const tree_node *map)
 
     // a misspelt key already explains what is missing
     int faults = r->faults;
-    find_action_parts(r, map, &at, &deed);
+    find_action_parts(r, map, &at, &effect);
     if (at == NULL && r->faults == faults) {
         report_node(r, map, "an action without a time, expected 'at: 0.4 s'");
     }
-    if (deed == NULL && r->faults == faults) {
+    if (effect == NULL && r->faults == faults) {
         report_node(r, map, "an action that does nothing, expected 'set:' or 'push:'");
     }
 
     bool timed = at != NULL && parse_time(r, at, &time);
-    if (deed != NULL && strcmp(deed->key->text, "set") == 0) {
-        parse_set(r, deed, timed, time);
-    } else if (deed != NULL) {
-        parse_push(r, deed, timed, time);
+    if (effect != NULL && strcmp(effect->key->text, "set") == 0) {
+        parse_set(r, effect, timed, time);
+    } else if (effect != NULL) {
+        parse_push(r, effect, timed, time);
     }
 }
 

@@ -34,16 +34,13 @@ static void write_inside(FILE *stream, const char *text)
         const int printable = printable_length(c);
         if (escape != NULL) {
             fputs(escape, stream);
+        } else if (printable > 0) {
+            length = (size_t)printable;
+            fwrite(c, 1, length, stream);
         } else {
-            if (printable > 0) {
-                length = (size_t)printable;
-            } else {
-                length = 1;
-            }
-            fwrite(printable > 0             ? c
-                   : (unsigned char)*c < ' ' ? " "
-                                             : "?",
-                   1, length, stream);
+            // a control character, or a byte of no character
+            length = 1;
+            fputc((unsigned char)*c < ' ' ? ' ' : '?', stream);
         }
     }
 }

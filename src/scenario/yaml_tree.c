@@ -114,6 +114,18 @@ static const char *forbidden(const yaml_event_t *event)
     return NULL;
 }
 
+// What begins with an event.
+static tree_kind kind_of_event(const yaml_event_t *event)
+{
+    if (event->type == YAML_SCALAR_EVENT) {
+        return TREE_SCALAR;
+    }
+    if (event->type == YAML_MAPPING_START_EVENT) {
+        return TREE_MAP;
+    }
+    return TREE_LIST;
+}
+
 // Makes the node that begins with an event, with nothing below it yet. False after a
 // fault.
 static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
@@ -144,9 +156,7 @@ static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
         free(node);
         return refuse_for_memory(b);
     }
-    *node = (tree_node){.kind = scalar                                    ? TREE_SCALAR
-                                : event->type == YAML_MAPPING_START_EVENT ? TREE_MAP
-                                                                          : TREE_LIST,
+    *node = (tree_node){.kind = kind_of_event(event),
                         .line = (int)event->start_mark.line + 1,
                         .column = (int)event->start_mark.column + 1,
                         .plain =

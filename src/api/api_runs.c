@@ -1,7 +1,7 @@
 // Runs of libimpactlab, and what they leave behind.
 #include <stdlib.h>
 
-#include "src/api/handles.h"
+#include "src/api/api_handles.h"
 #include "src/base/json.h"
 #include "src/rig/controller.h"
 #include "src/run/export.h"

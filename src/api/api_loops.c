@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "src/api/handles.h"
+#include "src/api/api_handles.h"
 
 int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handle,
                           int flags, impactlab_error *error)

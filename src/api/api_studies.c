@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/api/handles.h"
+#include "src/api/api_handles.h"
 #include "src/arm/modes.h"
 #include "src/study/batch.h"
 #include "src/study/pool.h"

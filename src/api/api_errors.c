@@ -1,4 +1,4 @@
-#include "src/api/handles.h"
+#include "src/api/api_handles.h"
 
 #include <stdarg.h>
 #include <stdlib.h>

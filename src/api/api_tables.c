@@ -1,5 +1,5 @@
 // The tables of parameters, signals and quantities as the library shows them.
-#include "src/api/handles.h"
+#include "src/api/api_handles.h"
 #include "src/base/shipped.h"
 #include "src/tables/summary.h"
 

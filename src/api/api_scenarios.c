@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/api/handles.h"
+#include "src/api/api_handles.h"
 #include "src/base/numbers.h"
 #include "src/rig/rig.h"
 

@@ -42,6 +42,29 @@ static void format_action(char *text, size_t size, const action *a)
     snprintf(text, size, "%s at %g s", set, a->time);
 }
 
+// Whether an action was added to the file's script, and has an effect; text has room for
+// it in words.
+static bool is_added(const scenario *s, int index, char *text, size_t size)
+{
+    const action *a = &s->actions[index];
+    if (!a->added ||
+        (a->kind == ACTION_SET && effect_none_from(s, a->parameter, index) != NULL)) {
+        return false;
+    }
+    format_action(text, size, a);
+    return true;
+}
+
+// A change in words, of number i among the parameters and then the actions; false if that
+// is as in the file.
+static bool change_in_words(const scenario *s, int i, char *words, size_t size)
+{
+    if (i < parameter_count) {
+        return is_changed(s, i, words, size);
+    }
+    return is_added(s, i - parameter_count, words, size);
+}
+
 const char *scenario_changes_within(const scenario *s, char *text, size_t room)
 {
     assert(room > 0);
@@ -52,15 +75,8 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
     // the parameters, then what the script does besides; what has no room is counted
     for (int i = 0; i < parameter_count + s->action_count; i++) {
         char words[4 * PARAMETER_TEXT_SIZE];
-        const action *a = i < parameter_count ? NULL : &s->actions[i - parameter_count];
-        if (a == NULL ? !is_changed(s, i, words, sizeof words)
-                      : !a->added || (a->kind == ACTION_SET &&
-                                      effect_none_from(s, a->parameter,
-                                                       i - parameter_count) != NULL)) {
+        if (!change_in_words(s, i, words, sizeof words)) {
             continue;
-        }
-        if (a != NULL) {
-            format_action(words, sizeof words, a);
         }
 
         const size_t length = strlen(words) + strlen(", with ");
@@ -68,9 +84,14 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
             more++;
             continue;
         }
-        used += (size_t)snprintf(text + used, room - used, "%s%s",
-                                 used == 0 ? ", with " : ", ", words);
+        const char *before = ", ";
+        if (used == 0) {
+            before = ", with ";
+        }
+        used += (size_t)snprintf(text + used, room - used, "%s%s", before, words);
     }
+
+    // how many had none
     if (more > 0 && used > 0) {
         snprintf(text + used, room - used, " and %d more", more);
     } else if (more > 0 && room >= MORE) {
