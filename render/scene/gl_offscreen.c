@@ -132,6 +132,7 @@ static status open_osmesa(gl_offscreen *g, fault *f)
 
 // ---- EGL
 
+// What EGL lacks, and what to do about it.
 static status complain_egl(fault *f, const char *what)
 {
     return fault_set(f, STATUS_CANNOT_WRITE,

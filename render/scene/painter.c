@@ -18,6 +18,7 @@ bool scene_renderer_find(const char *name, scene_renderer *which)
     return false;
 }
 
+// OpenGL where it is asked for or there, else samples filled by hand.
 status scene_painter_create(scene_painter **out, scene_renderer which, int width,
                             int height, int samples, fault *f)
 {
@@ -36,7 +37,8 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
         }
     }
 
-    // drawing by hand is always possible
+    // without OpenGL, drawing by hand is always possible; a renderer asked for must be
+    // there
     if (which != RENDER_AUTO) {
         TRY(code);
     }

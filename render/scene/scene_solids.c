@@ -21,6 +21,7 @@ static const material pin_steel = {{0.40, 0.40, 0.42}, 0.9};
 static const material force_paint = {{0.835, 0.369, 0.0}, 0.3};
 static const material trail_paint = {{0.902, 0.624, 0.0}, 0.1};
 
+// A material as it looks in the past: nearer to the ground's colour, and duller.
 material scene_paler(const scene *sc, material m, double share)
 {
     m.colour = colour_between(m.colour, sc->around->far, share);

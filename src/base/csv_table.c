@@ -293,7 +293,10 @@ static bool copy_unit(const char *heading, char unit[32])
     if (*bracket != '[') {
         return false;
     }
-    snprintf(unit, 32, "%.*s", (int)(strlen(bracket) - 2), bracket + 1);
+
+    // what stands between the brackets
+    const int length = (int)strlen(bracket) - 2;
+    snprintf(unit, 32, "%.*s", length, bracket + 1);
     return true;
 }
 

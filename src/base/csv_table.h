@@ -14,7 +14,7 @@
 typedef struct csv_table {
     char *file;      // its path; owned
     char *text;      // owned; headings and fields point into it
-    int columns;     //
+    int columns;     // headings, and fields of each row
     size_t rows;     // below the headings
     char **headings; // [columns], owned
     char **fields;   // row by row, owned

@@ -149,6 +149,7 @@ static int floor_log2_power(int e)
     return (e * 1741647) >> 19;
 }
 
+// Of 2^q, or of 3/4 of it.
 static int floor_log10_power(int q, bool closer_below)
 {
     int product = q * 1262611;

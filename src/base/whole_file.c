@@ -225,6 +225,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
         return cannot_write(f, path, reason);
     }
 
+    // the file to write, and a stream to it
     if (is_in_place(mode)) {
         w->descriptor = open(w->path, O_WRONLY | O_CLOEXEC);
     } else {
@@ -282,6 +283,7 @@ static int end_stream(whole_file *w)
         }
     }
 
+    // a text with a gap is not whole
     if (lost && reason == 0) {
         reason = ENOMEM;
     }

@@ -28,6 +28,7 @@ void run_origin_finish(run_origin *o)
     *o = (run_origin){0};
 }
 
+// By all that a scenario says but its expectations.
 bool same_base(const scenario *a, const scenario *b)
 {
     bool same = strcmp(a->name, b->name) == 0 && a->action_count == b->action_count;

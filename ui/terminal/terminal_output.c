@@ -140,7 +140,7 @@ static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
     }
 }
 
-static bool is_blank(cell c)
+static bool is_blank_cell(cell c)
 {
     return (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
 }
@@ -172,7 +172,7 @@ static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool wh
             // nothing
             bool there = c.glyph == before.glyph && c.ink == before.ink;
             if (whole) {
-                there = is_blank(c);
+                there = is_blank_cell(c);
             }
             if (there || (x == s->width - 1 && y == s->height - 1)) {
                 continue;
