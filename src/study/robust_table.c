@@ -1,4 +1,4 @@
-// Tables of the robustness of control laws against what they were not told.
+// Tables of how control laws do with wrong beliefs, sensors, walls and starts.
 #include <assert.h>
 #include <math.h>
 #include <string.h>

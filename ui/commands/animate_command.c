@@ -221,10 +221,12 @@ const command animate_command = {
     .least = 1,
     .most = FILM_RUNS,
     .takes_scenarios = true,
-    .help = "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program "
-            "ffmpeg; any other name is that of a folder, to\nbe made, for PNG "
-            "frames. Every impact is slowed down against the rest. Several "
-            "scenarios, or\n--beside, share the screen and one clock.\n",
+    .help =
+        "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any "
+        "other name is that of a folder, to\n"
+        "be made, for PNG frames. Every impact is slowed down against the rest. Several "
+        "scenarios, or\n"
+        "--beside, share the screen and one clock.\n",
     .options = {&set_options, OWN_OPTIONS(rows), &quiet_options, &view_options},
     .run = animate,
 };

@@ -96,9 +96,9 @@ const command check_command = {
     .least = 1,
     .most = 1 << 20,
     .takes_scenarios = true,
-    .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what "
-            "was expected. A value that has\nno effect is warned of by "
-            "FILE:LINE, and is no fault (exit status 0).\n",
+    .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what was "
+            "expected. A value that has\n"
+            "no effect is warned of by FILE:LINE, and is no fault (exit status 0).\n",
     .options = {&json_options},
     .run = check_files,
 };

@@ -293,13 +293,13 @@ const command figures_command = {
     .most = 1 << 20,
     .help =
         "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a "
-        "CSV of "
-        "what is\ndrawn stands beside each.\n\n"
+        "CSV of what is\n"
+        "drawn stands beside each.\n\n"
         "IDs are the thesis's numbers: 2.1 to 2.6, 3.1 to 3.11, 4.1 to 4.6, 5.1 to 5.7, "
-        "T2.1, "
-        "T3.1, T3.2,\nT4.1 to T4.3; forces, delays: those printed as points with "
-        "residuals; "
-        "errors: how near they\ncome out; beta-gamma: the map of Newmark's parameters.\n",
+        "T2.1, T3.1, T3.2,\n"
+        "T4.1 to T4.3; forces, delays: those printed as points with residuals; errors: "
+        "how near they\n"
+        "come out; beta-gamma: the map of Newmark's parameters.\n",
     .operand_word = figure_word,
     .options = {&json_options, OWN_OPTIONS(figures_rows), &quiet_options, &page_options},
     .run = draw_thesis_figures,

@@ -142,10 +142,12 @@ const command help_command = {
     .operands = "[COMMAND|QUESTION...]",
     .least = 0,
     .most = 32,
-    .help = "A QUESTION is some words, as in: impactlab help settling time. It "
-            "is looked up in the pages of the\nmanual, the parameters, the "
-            "quantities and signals of a run, and the commands; the best hits "
-            "are\nprinted with the passage that fits and where to read on.\n",
+    .help =
+        "A QUESTION is some words, as in: impactlab help settling time. It is looked up "
+        "in the pages of the\n"
+        "manual, the parameters, the quantities and signals of a run, and the commands; "
+        "the best hits are\n"
+        "printed with the passage that fits and where to read on.\n",
     .operand_word = command_word,
     .options = {OWN_OPTIONS(rows)},
     .run = help,

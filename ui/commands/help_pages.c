@@ -120,7 +120,7 @@ void print_commands(FILE *stream, const command_list *all)
     }
 
     // where to read on
-    fprintf(stream, "\nimpactlab COMMAND --help tells more about a command, impactlab "
+    fprintf(stream, "\nimpactlab COMMAND --help describes a command, impactlab "
                     "help QUESTION searches\n"
                     "the manual.\n"
                     "Exit status: 0 done; 1 the run failed or is inaccurate, or a file "

@@ -484,9 +484,11 @@ const command lab_command = {
     .least = 0,
     .most = 1,
     .takes_scenarios = true,
-    .help = "Opens corrected/first-impact if no scenario is named; ? lists the "
-            "keys. With --keys, --script or\n--size nothing is shown live: the "
-            "keys are pressed, then the script's screen is printed as text.\n",
+    .help =
+        "Opens corrected/first-impact if no scenario is named; ? lists the keys. With "
+        "--keys, --script or\n"
+        "--size nothing is shown live: the keys are pressed, then the script's screen is "
+        "printed as text.\n",
     .options = {&set_options, &lab_options, &quiet_options},
     .run = explore,
 };

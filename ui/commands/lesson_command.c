@@ -102,9 +102,9 @@ const command lesson_command = {
     .operands = "[NAME]",
     .least = 0,
     .most = 1,
-    .help = "Opens a lesson in the lab: steps with questions, checked by the run "
-            "itself. Without a name it lists them.\nIn the lab y goes on and A "
-            "answers; :lesson lists the lessons there.\n",
+    .help = "Opens a lesson in the lab: steps with questions, checked by the run itself. "
+            "Without a name it lists them.\n"
+            "In the lab y goes on and A answers; :lesson lists the lessons there.\n",
     .options = {&set_options, &json_options, &lab_options, &quiet_options},
     .run = list_or_open_lesson,
 };

@@ -51,7 +51,7 @@ const option_table view_options = OPTION_TABLE("The arm in space", view_rows);
 
 static const option_row page_rows[] = {
     OPTION(LENGTH, "width", "85mm|180mm",
-           "width of the page; everything is laid out anew", PLACE(width), .low = 60,
+           "width of the page; everything is laid out for it", PLACE(width), .low = 60,
            .high = 400),
     OPTION(LENGTH, "height", "60mm", "height of a plot (as its panels want)",
            PLACE(height), .low = 20, .high = 600),

@@ -108,10 +108,12 @@ const command plot_command = {
     .operands = "RECIPE.yaml",
     .least = 1,
     .most = 1,
-    .help = "A recipe names runs with changed parameters, measured data and the "
-            "databases of sweeps, and the\npanels that show them. A CSV of what "
-            "is drawn stands beside the picture. Examples are "
-            "in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
+    .help =
+        "A recipe names runs with changed parameters, measured data and the databases of "
+        "sweeps, and the\n"
+        "panels that show them. A CSV of what is drawn stands beside the picture. "
+        "Examples are in\n"
+        "scenarios/recipes, all keys in docs/reference/recipes.md.\n",
     .options = {OWN_OPTIONS(plot_rows), &quiet_options, &page_options},
     .run = plot_recipe,
 };

@@ -49,11 +49,12 @@ const command report_command = {
     .least = 0,
     .most = 64,
     .takes_scenarios = true,
-    .help = "Of the scenarios and recipes named, or without any of the whole "
-            "thesis. Into the folder 'report' unless -o says otherwise. The page "
-            "needs no other file and no network. Under\neach item stand its "
-            "scenario, its model and the command that makes it again.\n^C ends "
-            "it and leaves the report of before (exit status 130).\n",
+    .help =
+        "Of the scenarios and recipes named, or without any of the whole thesis. Into "
+        "the folder 'report' unless -o says otherwise. The page needs no other file and "
+        "no network. Under\n"
+        "each item stand its scenario, its model and the command that makes it again.\n"
+        "^C ends it and leaves the report of before (exit status 130).\n",
     .options = {OWN_OPTIONS(report_rows), &quiet_options},
     .run = write_report,
 };

@@ -355,12 +355,15 @@ const command run_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help = "SCENARIO is a name from impactlab list, or a file. What a scenario "
-            "file expects is checked unless\n--set changed something. A run that "
-            "fails still writes what it has until then, and so does one that ^C "
-            "ends (exit status 130). On a terminal a run of more than a "
-            "second\ntells how far it is.\nThe scene shows the arm at every "
-            "--at, or from the start to the peak force of the first pulse.\n",
+    .help =
+        "SCENARIO is a name from impactlab list, or a file. What a scenario file expects "
+        "is checked unless\n"
+        "--set changed something. A run that fails still writes what it has until then, "
+        "and so does one that ^C ends (exit status 130). On a terminal a run of more "
+        "than a second\n"
+        "shows its progress.\n"
+        "The scene shows the arm at every --at, or from the start to the peak force of "
+        "the first pulse.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options, &view_options},
     .run = check_and_run,

@@ -194,8 +194,8 @@ const command show_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help = "A parameter marked with = was given by the scenario or by --set, "
-            "the others have their defaults.\n",
+    .help = "A parameter marked with = was given by the scenario or by --set, the others "
+            "have their defaults.\n",
     .options = {&set_options, &json_options},
     .run = show_or_explain,
 };

@@ -374,14 +374,19 @@ const command compare_command = {
     .least = 1,
     .most = MOST_SCENARIOS,
     .takes_scenarios = true,
-    .help = "One row a run: peak force, its overshoot over the commanded force, "
-            "settling time, impacts,\nseparations, steady error, largest command and "
-            "electrical energy. Best peak and best time are\nwhat a controller could "
-            "have made of the first impact if it knew the whole state, pressing "
-            "no\nharder than the run did; from start is when it has settled, and least "
-            "time what no controller\ntakes less than for that. --set holds for all of "
-            "them; --vary, as sweep takes it, runs each of\nthem for every combination "
-            "of values. ^C ends it with the rows that are done (exit status 130).\n",
+    .help =
+        "One row a run: peak force, its overshoot over the commanded force, settling "
+        "time, impacts,\n"
+        "separations, steady error, largest command and electrical energy. Best peak and "
+        "best time are\n"
+        "what a controller could have made of the first impact if it knew the whole "
+        "state, pressing no\n"
+        "harder than the run did; from start is when it has settled, and least time what "
+        "no controller\n"
+        "takes less than for that. --set holds for all of them; --vary, as sweep takes "
+        "it, runs each of\n"
+        "them for every combination of values. ^C ends it with the rows that are done "
+        "(exit status 130).\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options},
     .run = compare_and_report,

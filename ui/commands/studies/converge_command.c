@@ -90,7 +90,7 @@ static void print_convergence(const void *found)
     }
     printf("\n  order p: the error falls as (step)^p, from the differences of the three "
            "columns;\n"
-           "  agree: equal to nine digits; -: cannot be told\n");
+           "  agree: equal to nine digits; -: not determined\n");
 }
 
 // --- the force at the three steps ------------------------------------------------------
@@ -189,13 +189,15 @@ static const option_row rows[] = {
 const command converge_command = {
     .name = "converge",
     .group = GROUP_MANY_RUNS,
-    .summary = "Run at the steps h, h/2, h/4 and tell the observed orders",
+    .summary = "Run at the steps h, h/2, h/4 and show the observed orders",
     .operands = "SCENARIO",
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help = "h is the scenario's method.step. --plot draws the contact force at the "
-            "three steps. ^C ends it with the\nsteps that are done (exit status 130).\n",
+    .help =
+        "h is the scenario's method.step. --plot draws the contact force at the three "
+        "steps. ^C ends it with the\n"
+        "steps that are done (exit status 130).\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = halve_steps_and_report,

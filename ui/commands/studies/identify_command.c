@@ -399,23 +399,24 @@ const command identify_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help = "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit "
-            "motor.stiction\n"
-            "simulates each trace with the command that was recorded and fits the "
-            "parameters until\n"
-            "the readings agree, each judged by its noise. Columns are headed as run "
-            "--csv heads\n"
-            "them: time[s], command[V] and any of encoder, tachometer, force_reading, "
-            "piezo_force,\n"
-            "film, accelerometer. Each trace has a time shift, an encoder offset and an "
-            "initial\n"
-            "state of its own. A combination that the data do not determine is named and "
-            "not\n"
-            "written. The exit status is 1 then, where a value ends at an end of its "
-            "range, and\n"
-            "where chi square per reading is above 4, as of noise twice as large as it "
-            "is said\n"
-            "to be.\n",
+    .help =
+        "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit "
+        "motor.stiction\n"
+        "simulates each trace with the command that was recorded and fits the parameters "
+        "until\n"
+        "the readings agree, each judged by its noise. Columns are headed as run --csv "
+        "heads\n"
+        "them: time[s], command[V] and any of encoder, tachometer, force_reading, "
+        "piezo_force,\n"
+        "film, accelerometer. Each trace has a time shift, an encoder offset and an "
+        "initial\n"
+        "state of its own. A combination that the data do not determine is named and "
+        "not\n"
+        "written. The exit status is 1 then, where a value ends at an end of its range, "
+        "and\n"
+        "where chi square per reading is above 4, as of noise twice as large as it is "
+        "said\n"
+        "to be.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &drawn_options,
                 &quiet_options, &page_options},
     .use = fit_and_report,

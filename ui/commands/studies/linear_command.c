@@ -107,14 +107,13 @@ const command linear_command = {
     .takes_scenarios = true,
     .help =
         "Linearises the arm at rest, x' = A x + B u from the command u, with back EMF, "
-        "viscous "
-        "friction and damping.\nIt presses with control.force where a law is to hold it, "
-        "else "
-        "under motor.voltage; Coulomb friction is left out.\n"
+        "viscous friction and damping.\n"
+        "It presses with control.force where a law is to hold it, else under "
+        "motor.voltage; Coulomb friction is left out.\n"
         "--law closes the sampled loop of its law; one that does not answer linearly is "
-        "measured by small sines.\n--vary tells where the loop is stable, by its poles "
-        "and, "
-        "with friction, by runs that settle.\n",
+        "measured by small sines.\n"
+        "--vary shows where the loop is stable, by its poles and, with friction, by runs "
+        "that settle.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options},
     .use = linearise_and_report,

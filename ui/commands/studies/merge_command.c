@@ -43,11 +43,13 @@ const command merge_command = {
     .operands = "FILE...",
     .least = 1,
     .most = 1 << 20,
-    .help = "The files are databases of impactlab sweep --part K/N --db FILE, in "
-            "any order. Parts of another sweep,\nand parts that hold the same "
-            "run, are refused. impactlab sweep with the same scenario and "
-            "--vary, and\n--db of the merged file, computes what may be missing "
-            "and writes CSV and pictures.\n",
+    .help =
+        "The files are databases of impactlab sweep --part K/N --db FILE, in any order. "
+        "Parts of another sweep,\n"
+        "and parts that hold the same run, are refused. impactlab sweep with the same "
+        "scenario and --vary, and\n"
+        "--db of the merged file, computes what may be missing and writes CSV and "
+        "pictures.\n",
     .options = {&json_options, OWN_OPTIONS(merge_rows), &quiet_options},
     .run = merge_parts,
 };

@@ -265,9 +265,10 @@ const command modes_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help = "Small vibrations about the straight arm without damping and "
-            "friction, for a hub that is locked (held by\nthe controller) or "
-            "free, and a tip that is free or pinned to the wall.\n",
+    .help =
+        "Small vibrations about the straight arm without damping and friction, for a hub "
+        "that is locked (held by\n"
+        "the controller) or free, and a tip that is free or pinned to the wall.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = compute_and_report_modes,

@@ -327,8 +327,10 @@ const command predict_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help = "On a terminal a run of more than a second tells how far it is; ^C "
-            "ends it (exit status 130), and nothing\nis predicted.\n",
+    .help =
+        "On a terminal a run of more than a second shows its progress; ^C ends it (exit "
+        "status 130), and nothing\n"
+        "is predicted.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = run_and_predict,

@@ -587,10 +587,9 @@ static const option_row rows[] = {
     OPTION(TEXT, "against", "LAW",
            "of cases: a law whose time from the start the others are held against",
            PLACE(against)),
-    OPTION(
-        WHOLE, "draw", "N",
-        "instead of a set: N cases of errors that no law is told, of seeds S, S + 1 ...",
-        PLACE(draw), .low = 1, .high = EXAM_MOST_CASES),
+    OPTION(WHOLE, "draw", "N",
+           "instead of a set: N cases of errors that no law knows, of seeds S, S + 1 ...",
+           PLACE(draw), .low = 1, .high = EXAM_MOST_CASES),
     OPTION(NUMBERS, "force", "F",
            "with --draw: a commanded force, may be repeated (the scenario's)",
            PLACE(forces), .low = 0, .high = 1e6, .unit = "N"),
@@ -610,38 +609,35 @@ static const option_row rows[] = {
 const command robust_command = {
     .name = "robust",
     .group = GROUP_CONTROL,
-    .summary = "How control laws stand what they were not told",
+    .summary = "Judge control laws over wrong beliefs, sensors, walls and starts",
     .operands = "SCENARIO",
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
     .help =
         "Runs each law many times on the scenario, with beliefs, sensors, wall and start "
-        "drawn "
-        "from a set (a Latin\nhypercube, the same draws for every law), and says which "
-        "share "
-        "of the runs settles, leaves the wall\nand exceeds control.force_limit (without "
-        "one, "
-        "1.3 times the command), and the median, the 90 %\nquantile and the worst of "
-        "overshoot, settling time and steady error. '-': that many do not settle. "
-        "back/there: "
-        "the worst of the\ntip's largest speed towards the wall in the air after first "
-        "contact, over that before it. over: of the peak, of arms with more than two "
-        "links of "
-        "the force's mean over\n5 ms, as 'over of' says; --json and --csv have both.\n\n"
+        "drawn from a set (a Latin\n"
+        "hypercube, the same draws for every law), and says which share of the runs "
+        "settles, leaves the wall\n"
+        "and exceeds control.force_limit (without one, 1.3 times the command), and the "
+        "median, the 90 %\n"
+        "quantile and the worst of overshoot, settling time and steady error. '-': that "
+        "many do not settle. back/there: the worst of the\n"
+        "tip's largest speed towards the wall in the air after first contact, over that "
+        "before it. over: of the peak, of arms with more than two links of the force's "
+        "mean over\n"
+        "5 ms, as 'over of' says; --json and --csv have both.\n\n"
         "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with "
-        "the "
-        "worst of the\nruns of each. Of control.settings each law gets those that it "
-        "has.\n\n"
+        "the worst of the\n"
+        "runs of each. Of control.settings each law gets those that it has.\n\n"
         "With --draw N the laws are examined instead: N cases, each with two or three "
         "errors of arm, wall, sensors, computer and beliefs from ranges that are stated "
         "in the manual, at each --force. A run is within the bounds with at most 30 % "
         "smoothed overshoot, settled in 0.3 s (0.6 s where contact is lost), 5 % steady "
         "error, and first contact at most 1.5 times as late as open-loop's. Shares are "
-        "told with their 95 % interval, by kind of error, and beside --before.\n\n"
+        "given with their 95 % interval, by kind of error, and beside --before.\n\n"
         "^C finishes the runs in hand, within five seconds, and judges what there is "
-        "(exit "
-        "status 130); with --db it goes on.\n",
+        "(exit status 130); with --db it goes on.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = judge_and_report,

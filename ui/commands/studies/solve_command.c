@@ -148,11 +148,11 @@ static status read_and_solve(const arguments *a, question *q, run_monitor *monit
 // The command: finds the limits and writes them.
 static int solve_and_report(const arguments *a, scenario *s)
 {
-    static const command_results results = {.json = solution_json,
-                                            .text = print_solution,
-                                            .kept =
-                                                "limits are told as near as these come",
-                                            .none = "there is nothing to show"};
+    static const command_results results = {
+        .json = solution_json,
+        .text = print_solution,
+        .kept = "limits are located as far as these allow",
+        .none = "there is nothing to show"};
     question q = {.scenario = s, .points = SOLVE_POINTS};
     if (a->runs > 0) {
         q.points = (int)a->runs;
@@ -193,11 +193,12 @@ const command solve_command = {
     .help =
         "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
         "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider "
-        "unless "
-        "a:b is\ngiven, and locates each limit within it. KEY is one of run --json; the "
-        "condition may be\n<, <=, > or >=. A limit is the last value at which the "
-        "condition "
-        "holds. Where there is\nnone the exit status is 1.\n",
+        "unless a:b is\n"
+        "given, and locates each limit within it. KEY is one of run --json; the "
+        "condition may be\n"
+        "<, <=, > or >=. A limit is the last value at which the condition holds. Where "
+        "there is\n"
+        "none the exit status is 1.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
     .use = solve_and_report,
 };

@@ -350,23 +350,20 @@ const command sweep_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help = "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them "
-            "evenly in the "
-            "logarithm,\nPATH=v1,v2,v3 takes those (words too: "
-            "method.name=event,newmark). Several "
-            "--vary give every\ncombination, the last one changing fastest. With "
-            "--sample random or "
-            "latin, --runs N values are drawn\nfrom each PATH=a:b or list. LIST[k]=... "
-            "varies the k-th "
-            "number of a list, counted from 1.\n\n"
-            "With --db a sweep that was interrupted goes on where it stopped when the "
-            "same command is "
-            "given again.\n^C finishes the runs in hand, within five seconds, and writes "
-            "the rows "
-            "there "
-            "are (exit status 130). Runs that fail are rows too; the\nexit status is 1 "
-            "if all of them "
-            "failed.\n",
+    .help =
+        "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them evenly "
+        "in the logarithm,\n"
+        "PATH=v1,v2,v3 takes those (words too: method.name=event,newmark). Several "
+        "--vary give every\n"
+        "combination, the last one changing fastest. With --sample random or latin, "
+        "--runs N values are drawn\n"
+        "from each PATH=a:b or list. LIST[k]=... varies the k-th number of a list, "
+        "counted from 1.\n\n"
+        "With --db a sweep that was interrupted goes on where it stopped when the same "
+        "command is given again.\n"
+        "^C finishes the runs in hand, within five seconds, and writes the rows there "
+        "are (exit status 130). Runs that fail are rows too; the\n"
+        "exit status is 1 if all of them failed.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options},
     .use = sweep_and_report,

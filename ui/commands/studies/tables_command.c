@@ -212,11 +212,13 @@ const command tables_command = {
     .group = GROUP_THESIS,
     .summary = "Tables 4.1-4.3 of the thesis: printed, computed, difference",
     .operands = "",
-    .help = "Each row is computed with the equations as the thesis prints them "
-            "and with the corrected ones. --fitted shows the delays of the "
-            "simulation with seven numbers and switches of the printed\nmodel "
-            "fitted to them, and those of the impact dynamics by the integral "
-            "that belongs to (4.19)\n(docs/explanation/thesis.md).\n",
+    .help =
+        "Each row is computed with the equations as the thesis prints them and with the "
+        "corrected ones. --fitted shows the delays of the simulation with seven numbers "
+        "and switches of the printed\n"
+        "model fitted to them, and those of the impact dynamics by the integral that "
+        "belongs to (4.19)\n"
+        "(docs/explanation/thesis.md).\n",
     .options = {&json_options, OWN_OPTIONS(rows), &quiet_options},
     .run = compute_and_report_tables,
 };

@@ -364,16 +364,19 @@ const command tune_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help = "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over "
-            "those of robust --json, else those of\nrun --json; growth_per_s is that "
-            "of linear --vary. --vary PATH=a:b (or a:b:log) says what may be changed "
-            "within which range. Over a set an\nevaluation is a batch of runs with the "
-            "same draws each time, as many runs as there are evaluations.\nWhat is not "
-            "allowed or fails ranks last.\n\nThe result is judged on 200 draws that "
-            "the search did not see, also with each number a tenth lower and\nhigher "
-            "(a whole one by one at least). The file of -o is whole at every instant; "
-            "with --db the same command goes on where a search\nwas stopped. The exit "
-            "status is 1 if no values meet --subject.\n",
+    .help =
+        "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over those of "
+        "robust --json, else those of\n"
+        "run --json; growth_per_s is that of linear --vary. --vary PATH=a:b (or a:b:log) "
+        "says what may be changed within which range. Over a set an\n"
+        "evaluation is a batch of runs with the same draws each time, as many runs as "
+        "there are evaluations.\n"
+        "What is not allowed or fails ranks last.\n\n"
+        "The result is judged on 200 draws that the search did not see, also with each "
+        "number a tenth lower and\n"
+        "higher (a whole one by one at least). The file of -o is whole at every instant; "
+        "with --db the same command goes on where a search\n"
+        "was stopped. The exit status is 1 if no values meet --subject.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options},
     .use = tune_and_report,
