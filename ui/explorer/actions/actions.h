@@ -239,8 +239,8 @@ void act_pan_by(const explorer_model *model, explorer_view *view, double seconds
 bool act_zoom_between(const explorer_model *model, explorer_view *view,
                       explorer_input *input, double from, double to);
 
-// What the last input came to: that the run stops with it, that it has no effect, or its
-// news.
+// Says what the last input changed: that the run stops with it, that it has no effect, or
+// the value.
 bool act_tell_change(const explorer_model *model, explorer_input *input);
 
 // Gives a parameter another value, from the cursor on or from the start: one that was

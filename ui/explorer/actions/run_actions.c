@@ -447,7 +447,7 @@ bool act_continue_sweep(explorer_model *model, explorer_input *input)
     } while (lab_sweep_is_map(sweep) && !lab_sweep_is_done(sweep) &&
              clock_seconds(CLOCK_MONOTONIC) - begin < LONGEST_MAP_PIECE);
 
-    // only the last one is news
+    // the last one is said
     if (!lab_sweep_is_done(sweep)) {
         return true;
     }

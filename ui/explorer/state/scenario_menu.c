@@ -53,7 +53,7 @@ void scenario_menu_read_titles(scenario_menu *menu)
     }
     menu->texts = g_new0(menu_text, menu->count);
 
-    // a file that cannot be read has only its name; opening it tells its faults
+    // a file that cannot be read has only its name; opening it says its faults
     for (int i = 0; i < menu->count; i++) {
         scenario s;
         fault f = {0};

@@ -144,7 +144,7 @@ typedef struct explorer_view {
 typedef struct explorer_input {
     prompt prompt;
     message_line message;
-    fault fault;        // of what an action called last, until act_succeeded has told it
+    fault fault;        // of what an action called last, until act_succeeded says it
     char *copied;       // for the terminal's clipboard, NULL: nothing
     bool asked_to_quit; // the last key asked to quit, and changes would be lost
     bool quit;

@@ -22,13 +22,14 @@ panel_place panel_place_of(panel_id id)
 
 bool filter_passes(const char *filter, const char *text)
 {
-    char word[LINE_TEXT];
-    bool passes = true;
-    while (*filter != '\0' && passes) {
+    while (*filter != '\0') {
+        char word[LINE_TEXT];
         filter = text_cut(filter, " ", word, sizeof word);
-        passes = strcasestr(text, word) != NULL;
+        if (strcasestr(text, word) == NULL) {
+            return false;
+        }
     }
-    return passes;
+    return true;
 }
 
 // --- looks -----------------------------------------------------------------------------
