@@ -186,7 +186,9 @@ TEST(all_short_words_have_their_distance)
         const int until = count;
         for (int i = from; i < until; i++) {
             for (char c = 'a'; c <= 'c' && (int)strlen(words[i]) == length - 1; c++) {
-                snprintf(words[count++], sizeof words[0], "%.3s%c", words[i], c);
+                char *longer = words[count++];
+                memcpy(longer, words[i], sizeof words[i]);
+                longer[length - 1] = c;
             }
         }
         from = until;
