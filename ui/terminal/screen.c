@@ -42,7 +42,7 @@ void screen_clear(screen *s)
 }
 
 // The cell in a place, NULL beyond the edges.
-static cell *cell_at(screen *s, int x, int y)
+static cell *screen_cell(screen *s, int x, int y)
 {
     const bool inside = x >= 0 && y >= 0 && x < s->width && y < s->height;
     if (inside) {
@@ -54,7 +54,7 @@ static cell *cell_at(screen *s, int x, int y)
 void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour)
 {
     assert(colour < INK_COUNT);
-    cell *c = cell_at(s, x, y);
+    cell *c = screen_cell(s, x, y);
     if (c != NULL) {
         *c = (cell){glyph, colour};
     }
@@ -218,7 +218,7 @@ void screen_tint(screen *s, int x, int y, int width, int height, ink colour)
 {
     for (int row = y; row < y + height; row++) {
         for (int column = x; column < x + width; column++) {
-            cell *c = cell_at(s, column, row);
+            cell *c = screen_cell(s, column, row);
             if (c != NULL) {
                 c->ink = colour;
             }
@@ -240,8 +240,8 @@ void canvas_dot(const canvas *c, long across, long down, ink colour)
     }
 
     // joins the dots that are in the cell already, and replaces anything else
-    cell *at = cell_at(c->screen, c->x + (int)(across / DOTS_ACROSS),
-                       c->y + (int)(down / DOTS_DOWN));
+    cell *at = screen_cell(c->screen, c->x + (int)(across / DOTS_ACROSS),
+                           c->y + (int)(down / DOTS_DOWN));
     if (at != NULL) {
         if (!is_braille(at->glyph)) {
             at->glyph = BRAILLE;

@@ -21,8 +21,8 @@ static double time_at(const explorer_model *model, const explorer_view *view, ar
 
 // A turn of the wheel zooms the axis of values or of time that is under the mouse, or
 // pans: over the curves with Shift, on the time axis without Control.
-static void turn_wheel(const explorer_model *model, explorer_view *view,
-                       const panel_gesture *g)
+static void turn_wheel_on_curves(const explorer_model *model, explorer_view *view,
+                                 const panel_gesture *g)
 {
     const hit_area *h = &g->hit;
     const int direction = pointer_wheel(g->event);
@@ -44,7 +44,7 @@ static void turn_wheel(const explorer_model *model, explorer_view *view,
     }
 }
 
-static int limited(int value, int low, int high)
+static int kept_between(int value, int low, int high)
 {
     if (value < low) {
         return low;
@@ -80,8 +80,8 @@ static bool drag_box(const explorer_model *model, explorer_view *view,
     if (g->event.kind == POINTER_PRESS) {
         *b = (zoom_box){.pane = g->hit.index, .x0 = g->event.x, .y0 = g->event.y};
     }
-    b->x1 = limited(g->event.x, a.x, a.x + a.width - 1);
-    b->y1 = limited(g->event.y, a.y, a.y + a.height - 1);
+    b->x1 = kept_between(g->event.x, a.x, a.x + a.width - 1);
+    b->y1 = kept_between(g->event.y, a.y, a.y + a.height - 1);
     b->held = g->event.kind != POINTER_RELEASE;
     if (b->held || b->x1 == b->x0) {
         return true;
@@ -172,7 +172,7 @@ bool curves_point(explorer_model *model, explorer_view *view, explorer_input *in
             return false;
         }
         if (part != PART_VIEW) {
-            turn_wheel(model, view, g);
+            turn_wheel_on_curves(model, view, g);
         }
         return true;
     }

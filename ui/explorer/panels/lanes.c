@@ -342,8 +342,8 @@ static int map_column(const session *e, area line, double time)
 }
 
 // The whole run in a row: the visible part, impacts, the cursor.
-static void draw_map(const explorer_model *model, const explorer_view *view, screen *s,
-                     area line)
+static void draw_run_map(const explorer_model *model, const explorer_view *view,
+                         screen *s, area line)
 {
     const session *e = &model->session;
     const trace *t = &e->run.trace;
@@ -397,7 +397,7 @@ void draw_lanes(const explorer_model *model, const explorer_view *view, layout *
     if (a.height > 0 && has_map(view)) {
         const area line = area_right(area_row(a, 0), LABEL_WIDTH + 1);
         screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "whole run");
-        draw_map(model, view, s, line);
+        draw_run_map(model, view, s, line);
         layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_MAP, 0, line});
         a = area_below(a, 1);
     }

@@ -204,7 +204,7 @@ PANEL_LIST(PANEL_DECLARATION)
 #undef PANEL_DECLARATION
 
 // --- the catalogue ---------------------------------------------------------------------
-// catalogue.c alone knows all panels; no panel calls it.
+// panel_catalogue.c alone knows all panels; no panel calls it.
 
 // The description of a panel; not for PANEL_NONE.
 const panel *panel_of(panel_id id);

@@ -237,7 +237,7 @@ static bool outranks(double value, double other, bool upper_half)
 }
 
 // The row of an axis at which a value lies.
-static long row_of(value_range axis, int height, double value)
+static long axis_row(value_range axis, int height, double value)
 {
     return lround((axis.high - value) / (axis.high - axis.low) * (4.0 * height - 1)) / 4;
 }
@@ -246,8 +246,8 @@ static long row_of(value_range axis, int height, double value)
 static bool ticks_have_rows(const ticks *t, value_range axis, int height)
 {
     for (int i = 1; i < t->count; i++) {
-        const long row = row_of(axis, height, t->value[i]);
-        if (row == row_of(axis, height, t->value[i - 1])) {
+        const long row = axis_row(axis, height, t->value[i]);
+        if (row == axis_row(axis, height, t->value[i - 1])) {
             return false;
         }
     }
@@ -277,7 +277,7 @@ static int tick_of_row(const ticks *t, value_range axis, int height, int row)
     const bool upper_half = 2 * row < height;
     int best = -1;
     for (int i = 0; i < t->count; i++) {
-        if (row_of(axis, height, t->value[i]) == row &&
+        if (axis_row(axis, height, t->value[i]) == row &&
             (best < 0 || outranks(t->value[i], t->value[best], upper_half))) {
             best = i;
         }
@@ -353,7 +353,8 @@ static void draw_instants(screen *s, area a, double from, double to)
 }
 
 // Contact as a bar on the line of the axis, as far as the run has been seen.
-static void draw_contact(const session *e, screen *s, area line, double from, double to)
+static void draw_contact_bar(const session *e, screen *s, area line, double from,
+                             double to)
 {
     const trace *t = &e->run.trace;
     for (int i = 0; i < line.width; i++) {
@@ -387,7 +388,7 @@ area draw_time_axis(const explorer_model *model, const explorer_view *view, scre
     const area below = area_right(a, LABEL_WIDTH + 1), line = area_row(below, 0);
     double from, to;
     view_window(model, view, &from, &to);
-    draw_contact(e, s, line, from, to);
+    draw_contact_bar(e, s, line, from, to);
 
     // a touch that is shorter than a column
     for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {

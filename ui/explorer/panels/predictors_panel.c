@@ -14,10 +14,11 @@ enum { ANSWERS_AT = 16 };     // column behind the labels [cells]
 // What the linearised arm says of the state in a row. It is asked once for each row: with
 // more links than two it takes milliseconds, too long for every frame of a run that
 // plays.
-static prediction_answer ask_linearised(const explorer_model *model,
-                                        const explorer_view *view,
-                                        linearised_answer *known,
-                                        const prediction_question *question, size_t r)
+static prediction_answer linearised_answer_at(const explorer_model *model,
+                                              const explorer_view *view,
+                                              linearised_answer *known,
+                                              const prediction_question *question,
+                                              size_t r)
 {
     const unsigned long run = model_run_id(model);
     const int links = question->parameters->arm.links;
@@ -33,9 +34,9 @@ static prediction_answer ask_linearised(const explorer_model *model,
 }
 
 // What a predictor says of the state in a row.
-static prediction_answer ask_predictor(const explorer_model *model,
-                                       const explorer_view *view, layout *lay,
-                                       predictor which, size_t r)
+static prediction_answer predictor_answer_at(const explorer_model *model,
+                                             const explorer_view *view, layout *lay,
+                                             predictor which, size_t r)
 {
     const trace *t = &model->session.run.trace;
     const sample *row = &t->rows[r];
@@ -53,7 +54,7 @@ static prediction_answer ask_predictor(const explorer_model *model,
         .velocities = t->velocities + first_angle,
         .current = row_current(&p.motor, row)};
     if (which == PREDICTOR_LINEARISED) {
-        return ask_linearised(model, view, &lay->linearised, &question, r);
+        return linearised_answer_at(model, view, &lay->linearised, &question, r);
     }
     return predict_with(which, &question);
 }
@@ -156,7 +157,8 @@ static int draw_answers(const explorer_model *model, const explorer_view *view,
                                       PREDICTOR_LINEARISED};
     enum { ASKED = sizeof asked / sizeof asked[0] };
     for (int i = 0; i < ASKED && i < a.height; i++) {
-        const prediction_answer answer = ask_predictor(model, view, lay, asked[i], r);
+        const prediction_answer answer =
+            predictor_answer_at(model, view, lay, asked[i], r);
         const area line = area_row(a, i), beside = area_right(line, ANSWERS_AT);
         area_text(s, line, INK_TEXT, answer.short_label);
         if (prediction_known(&answer)) {

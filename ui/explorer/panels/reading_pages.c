@@ -105,7 +105,7 @@ static void add_heading(page *p, const char *title)
 }
 
 // Keys in a column of their own, then what they do; many keys take a line for themselves.
-static void add_entry(page *p, const char *keys, const char *text)
+static void add_keys(page *p, const char *keys, const char *text)
 {
     help_line *line = new_line(p);
     snprintf(line->text, sizeof line->text, "%s", keys);
@@ -141,7 +141,7 @@ static void add_commands(page *p, const key_bindings *b)
             snprintf(text, sizeof text, "%s  %s", call, c->help);
         }
         key_names_of(b, c->name, keys, sizeof keys);
-        add_entry(p, keys, text);
+        add_keys(p, keys, text);
     }
 }
 
@@ -161,7 +161,7 @@ static void add_user_keys(page *p, const key_bindings *b)
             text_add(text, sizeof text, " (the lab's: %s)", built_in);
         }
         key_name(own->key, key, sizeof key);
-        add_entry(p, key, text);
+        add_keys(p, key, text);
     }
 }
 
@@ -264,7 +264,7 @@ const panel help_panel = {.name = "help", .draw = draw_help, .key = page_key};
 // --- the scenario ----------------------------------------------------------------------
 
 // What an action of a script does, with its instant.
-static void add_action(page *p, const action *a)
+static void add_script_line(page *p, const action *a)
 {
     char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH];
     char *line = new_line(p)->text;
@@ -301,7 +301,7 @@ static void draw_info(const explorer_model *model, const explorer_view *view, la
         new_line(&p);
     }
     for (int i = 0; i < base->action_count; i++) {
-        add_action(&p, &base->actions[i]);
+        add_script_line(&p, &base->actions[i]);
     }
     if (ends_with_blank(&p)) {
         p.count--;
@@ -406,7 +406,7 @@ static void draw_welcome(const explorer_model *model, const explorer_view *view,
     page p = begin_page(body, 76);
     p.column = 3;
     for (int i = 0; i < 3; i++) {
-        add_entry(&p, (char[]){(char)('1' + i), '\0'}, steps[i]);
+        add_keys(&p, (char[]){(char)('1' + i), '\0'}, steps[i]);
     }
     draw_page(view, lay, s, body, &p, "a first visit (any key goes on)", 0);
 }

@@ -3,16 +3,16 @@
 
 enum { STEP_LINES = 7, STEP_TEXT = 1024 }; // at most
 
-static const lesson_step *present_step(const explorer_model *model)
+static const lesson_step *step_of_lesson(const explorer_model *model)
 {
     return &model->session.base.lesson.steps[model->lesson.step];
 }
 
 // The step as text: its sentence, the answers to choose from, what it says when it is
 // done.
-static void write_step(const explorer_model *model, char text[STEP_TEXT])
+static void write_lesson_step(const explorer_model *model, char text[STEP_TEXT])
 {
-    const lesson_step *step = present_step(model);
+    const lesson_step *step = step_of_lesson(model);
     if (model->lesson.passed) {
         snprintf(text, STEP_TEXT, "Right. %s", step->then);
         return;
@@ -26,7 +26,7 @@ static void write_step(const explorer_model *model, char text[STEP_TEXT])
 // The key to press.
 static const char *wanted_key(const explorer_model *model)
 {
-    const lesson_step *step = present_step(model);
+    const lesson_step *step = step_of_lesson(model);
     if (model->lesson.passed || step->check == LESSON_READ) {
         return "y goes on";
     }
@@ -45,7 +45,7 @@ static int lesson_rows(const explorer_model *model, const explorer_view *view,
     if (!model->lesson.on) {
         return 0;
     }
-    write_step(model, text);
+    write_lesson_step(model, text);
     return 2 + text_wrap(text, body.width - 4, lines, STEP_LINES, NULL);
 }
 
@@ -64,7 +64,7 @@ static void draw_lesson(const explorer_model *model, const explorer_view *view,
 
     // as many lines as there is room for
     const area inside = area_inside(a);
-    write_step(model, text);
+    write_lesson_step(model, text);
     const int count = text_wrap(text, inside.width, lines, STEP_LINES, NULL);
     const ink shade = model->lesson.passed ? INK_TITLE : INK_TEXT;
     area_lines(s, inside, shade, lines, count);

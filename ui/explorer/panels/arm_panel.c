@@ -178,8 +178,8 @@ static void draw_link(const canvas *c, plane_vector from, plane_vector to, ink s
 }
 
 // The links of a run at an instant.
-static void draw_links(const explorer_model *model, const explorer_view *view,
-                       const stage *g, const trace *t, ink shade, bool dotted)
+static void draw_arm_links(const explorer_model *model, const explorer_view *view,
+                           const stage *g, const trace *t, ink shade, bool dotted)
 {
     const parameters *p = &model->session.effective.parameters;
     vector joints[PARAMETER_LINKS_MOST + 1];
@@ -195,7 +195,7 @@ static void draw_links(const explorer_model *model, const explorer_view *view,
 }
 
 // A circle with a hand at the hub's angle.
-static void draw_hub(const stage *g, double angle)
+static void draw_hub_circle(const stage *g, double angle)
 {
     enum { DOTS = 48 };
     const double radius = 5, whole_turn = 6.283185307; // [dots], [rad]
@@ -249,7 +249,7 @@ static void draw_wall(const stage *g, const parameters *p, const sample *at)
 
 // An arrow that pushes on the arm at its tip, as long as the force is a share of the
 // run's peak.
-static void draw_force(const stage *g, plane_vector tip, double force, double peak)
+static void draw_force_arrow(const stage *g, plane_vector tip, double force, double peak)
 {
     const canvas *c = &g->canvas;
     if (!(force > 0) || !(peak > 0)) {
@@ -277,16 +277,16 @@ static void draw_dots(const explorer_model *model, const explorer_view *view,
     const plane_vector tip = tip_of(model);
     draw_wall(g, &e->effective.parameters, row);
     if (other_run(e) != NULL) {
-        draw_links(model, view, g, other_run(e), INK_OTHER, true);
+        draw_arm_links(model, view, g, other_run(e), INK_OTHER, true);
     }
-    draw_hub(g, row->hub_angle);
-    draw_links(model, view, g, &e->run.trace, INK_ARM, false);
+    draw_hub_circle(g, row->hub_angle);
+    draw_arm_links(model, view, g, &e->run.trace, INK_ARM, false);
     if (view->pull.held) {
         const plane_vector hand = {view->pull.x, view->pull.y};
         draw_line_between(g, tip, hand, INK_FORCE);
     }
     if (row->contact != 0) {
-        draw_force(g, tip, row->force, e->run.summary.peak_force_N);
+        draw_force_arrow(g, tip, row->force, e->run.summary.peak_force_N);
     }
 }
 

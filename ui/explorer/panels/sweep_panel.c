@@ -221,7 +221,7 @@ static void draw_map_cells(const lab_sweep *sweep, layout *lay, screen *s, area 
 }
 
 // The map, and in the last rows the axes, the shades and the selected cell.
-static void draw_map(const explorer_model *model, layout *lay, screen *s, area a)
+static void draw_sweep_map(const explorer_model *model, layout *lay, screen *s, area a)
 {
     enum { WORDS = 4, MOST_CELL_HEIGHT = 3 }; // rows
     const lab_sweep *sweep = &model->sweep;
@@ -288,7 +288,7 @@ static void draw_sweep(const explorer_model *model, const explorer_view *view,
     const area inside = area_inside(a), below = area_below(inside, 1);
     area_print(s, inside, INK_DIM, "%s (M: next)", summary_table[sweep->metric].label);
     if (lab_sweep_is_map(sweep)) {
-        draw_map(model, lay, s, below);
+        draw_sweep_map(model, lay, s, below);
         return;
     }
 

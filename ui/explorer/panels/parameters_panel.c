@@ -227,8 +227,8 @@ static bool selected_line_expands(const explorer_model *model, const explorer_vi
     return has_slider || model_inert_reason(model, chosen) != NULL;
 }
 
-static void draw_parameters(const explorer_model *model, const explorer_view *view,
-                            layout *lay, screen *s, area a)
+static void draw_parameter_list(const explorer_model *model, const explorer_view *view,
+                                layout *lay, screen *s, area a)
 {
     const parameters p = model_parameters(model);
     const area inside = area_inside(a);
@@ -318,5 +318,5 @@ static bool point_at_parameters(explorer_model *model, explorer_view *view,
 }
 
 const panel parameters_panel = {.name = "parameters",
-                                .draw = draw_parameters,
+                                .draw = draw_parameter_list,
                                 .point = point_at_parameters};

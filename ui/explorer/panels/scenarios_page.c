@@ -9,7 +9,7 @@ enum { HEAD = 3, EDGES = 4 };
 
 // The first line to show. It moves only as far as it must from the one that was the first
 // (-1: none yet), so that a second click meets what the first one selected.
-static int first_scenario(int selected, int count, int first, int height)
+static int first_shown_scenario(int selected, int count, int first, int height)
 {
     if (first < 0) {
         return draw_first_line(selected, count, height);
@@ -86,7 +86,8 @@ static void draw_scenarios(const explorer_model *model, const explorer_view *vie
     const int height = a.height - EDGES - preview;
     const area lines = {a.x + 1, a.y + HEAD, a.width - 2, height};
     const int count = scenario_menu_lines(menu, &selected);
-    const int first = first_scenario(selected, count, view->drawn.first_scenario, height);
+    const int first =
+        first_shown_scenario(selected, count, view->drawn.first_scenario, height);
     lay->drawn.first_scenario = first;
     lay->drawn.page_lines = height > 1 ? height - 1 : 1;
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_BODY, 0, a});

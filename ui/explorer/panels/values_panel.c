@@ -142,7 +142,7 @@ const panel values_panel = {.name = "values", .draw = draw_values, .wheel = WHEE
 
 enum { SIGNAL_ROWS = 3 };
 
-static bool is_among(const int *signals, int count, int signal)
+static bool has_signal(const int *signals, int count, int signal)
 {
     for (int i = 0; i < count; i++) {
         if (signals[i] == signal) {
@@ -173,7 +173,7 @@ static int find_signals(const explorer_model *model, const explorer_view *view,
         for (int k = 0; k < p->count; k++) {
             const int signal = p->signals[k];
             const bool has_values = !subtracts || !signal_is_derived(signal);
-            if (has_values && !is_among(signals, count, signal)) {
+            if (has_values && !has_signal(signals, count, signal)) {
                 signals[count++] = signal;
             }
         }

@@ -48,7 +48,7 @@ static int free_colour(const explorer_view *view, const pane_look *look, int cur
 
 // The style, or the plainest that no earlier curve of the pane has; of more curves than
 // there are styles the last one.
-static line_style free_style(const pane_look *look, int curves, line_style style)
+static line_style free_line_style(const pane_look *look, int curves, line_style style)
 {
     static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED,
                                              LINE_DASH_DOT};
@@ -70,7 +70,7 @@ static pane_look pane_look_of(const explorer_view *view, const pane *p)
         const signal_info *info = &signal_table[p->signals[k]];
         const int slot = free_colour(view, &look, k, info->colour);
         look.colour[k] = (ink)(INK_SERIES_0 + slot);
-        look.style[k] = free_style(&look, k, info->style);
+        look.style[k] = free_line_style(&look, k, info->style);
     }
     return look;
 }
@@ -113,8 +113,8 @@ static double value_at_cursor(const explorer_model *model, const pane *p, int si
 
 // What a legend says of a signal's value: a mode by its name where the law is one of
 // ours, else a number; brief ones have up to three digits.
-static void format_value(const explorer_model *model, const pane *p, int signal,
-                         bool brief, char *text, size_t size)
+static void format_legend_value(const explorer_model *model, const pane *p, int signal,
+                                bool brief, char *text, size_t size)
 {
     const double value = value_at_cursor(model, p, signal);
     if (strcmp(signal_table[signal].name, "controller_mode") == 0) {
@@ -136,7 +136,7 @@ static void format_value(const explorer_model *model, const pane *p, int signal,
 }
 
 // The unit of all signals of a pane, "" if they have several.
-static const char *unit_of(const pane *p)
+static const char *pane_unit(const pane *p)
 {
     const char *unit = signal_table[p->signals[0]].unit;
     for (int k = 1; k < p->count; k++) {
@@ -155,8 +155,8 @@ static void write_legend(const explorer_model *model, const pane *p, int signal,
     const signal_info *info = &signal_table[signal];
     const char *name;
     char value[48];
-    format_value(model, p, signal, how == LEGEND_TIGHT, value, sizeof value);
-    const bool has_own_unit = unit_of(p)[0] == '\0' && info->unit[0] != '\0';
+    format_legend_value(model, p, signal, how == LEGEND_TIGHT, value, sizeof value);
+    const bool has_own_unit = pane_unit(p)[0] == '\0' && info->unit[0] != '\0';
     switch (how) {
     case LEGEND_NAMES:
     case LEGEND_SYMBOLS:
@@ -232,7 +232,7 @@ static void draw_legend(const explorer_model *model, const explorer_view *view,
 static void draw_pane_number(const explorer_view *view, screen *s, int index, area a)
 {
     const bool focused = index == panes_focused(&view->panes);
-    const char *unit = unit_of(&view->panes.pane[index]);
+    const char *unit = pane_unit(&view->panes.pane[index]);
     screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%3d%*s", index + 1, LABEL_WIDTH - 3,
                  unit);
     if (focused) {
