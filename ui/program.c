@@ -174,6 +174,7 @@ static void catch_ending(int number, void (*handler)(int))
     }
 }
 
+// Catches crashes and the signals that ask to end.
 static void catch_endings(void)
 {
     static const int crashes[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP};

@@ -55,6 +55,7 @@ static double intensity(unsigned char component)
     return pow((share + 0.055) / 1.055, 2.4);
 }
 
+// The relative luminance of WCAG 2, 0 to 1.
 static double luminance(rgb c)
 {
     return 0.2126 * intensity(c.red) + 0.7152 * intensity(c.green) +
@@ -124,6 +125,7 @@ rgb colour_256(int index)
     return (rgb){levels[in_cube / 36], levels[in_cube / 6 % 6], levels[in_cube % 6]};
 }
 
+// Whether a colour has no hue.
 static bool is_grey(rgb c)
 {
     return c.red == c.green && c.green == c.blue;
@@ -140,6 +142,7 @@ typedef struct colour_search {
     bool greys;
 } colour_search;
 
+// Whether a colour of the terminal is among those that may stand for the wanted one.
 static bool is_allowed(const colour_search *search, colour_theme theme, int index,
                        rgb wanted)
 {
@@ -217,6 +220,7 @@ static int nearest_of_16(colour_theme theme, ink i, unsigned taken)
     return best;
 }
 
+// The index of an ink among 16 colours, -1 for the default of the terminal.
 static int find_16(colour_theme theme, ink i)
 {
     int best = -1;

@@ -27,6 +27,7 @@ typedef struct sixel_picture {
     unsigned char *bits;      // of a band: for each colour in it, a row of columns
 } sixel_picture;
 
+// The bin of a pixel 0xRRGGBB.
 static int bin_of(uint32_t pixel)
 {
     const int shift = 8 - BIN_BITS;
@@ -348,6 +349,7 @@ static void take_ground(pixel_answers *a, const char *text)
     a->has_ground = true;
 }
 
+// Whether a cell of that size [pixels] is to be believed.
 static bool is_usual_cell(int height, int width)
 {
     return height >= LEAST_CELL && height <= MOST_CELL && width >= LEAST_CELL &&

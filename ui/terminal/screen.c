@@ -15,6 +15,7 @@ enum { BRAILLE = 0x2800, BRAILLE_END = BRAILLE + 256 };
 // The dots of a cell.
 enum { DOTS_ACROSS = 2, DOTS_DOWN = 4 };
 
+// Whether a glyph is made of dots.
 static bool is_braille(uint32_t glyph)
 {
     return glyph >= BRAILLE && glyph < BRAILLE_END;
@@ -311,6 +312,7 @@ static uint32_t ascii_dots(uint32_t dots)
     return (uint32_t)characters[upper_rows | lower_rows];
 }
 
+// The ASCII character that stands for a glyph, ? for one that has none.
 static uint32_t ascii_glyph(uint32_t glyph)
 {
     // each behind the ASCII character that stands for it

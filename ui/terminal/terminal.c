@@ -63,6 +63,7 @@ static void on_fatal(int number)
     raise(number);
 }
 
+// Catches the signals, and remembers what they did before.
 static void take_signals(void)
 {
     const struct sigaction polite = {.sa_handler = on_polite};
@@ -87,6 +88,7 @@ static void take_signals(void)
     }
 }
 
+// Lets signals do what they did before take_signals.
 static void give_signals_back(void)
 {
     for (int i = 0; i < SIGNALS; i++) {

@@ -47,6 +47,7 @@ void terminal_send(const char *bytes, size_t count)
 
 static FILE *sequences; // where put_byte writes
 
+// Writes a byte of a sequence, as tputs asks for.
 static int put_byte(int byte)
 {
     return putc(byte, sequences);
@@ -130,6 +131,7 @@ static void put_coloured_ink(FILE *stream, ink i, colour_theme theme, colour_dep
     }
 }
 
+// Selects an ink in a theme's colours, or in the ways of a terminal without colours.
 static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
 {
     put_capability(stream, "sgr0", 0);
@@ -140,6 +142,7 @@ static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
     }
 }
 
+// Whether a cell of an empty terminal is that already; pictures come later.
 static bool is_blank_cell(cell c)
 {
     return (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;

@@ -218,6 +218,7 @@ static void draw_line_between(const stage *g, plane_vector from, plane_vector to
                 plan_y(v, to.y), shade);
 }
 
+// The wall where it is at that row: a plane as a line, and the place of contact.
 static void draw_wall(const stage *g, const parameters *p, const sample *at)
 {
     const canvas *c = &g->canvas;
@@ -292,6 +293,7 @@ static void draw_dots(const explorer_model *model, const explorer_view *view,
 
 // --- as pixels -------------------------------------------------------------------------
 
+// The same as a picture, which render/scene paints.
 static void draw_pixels(const explorer_model *model, const explorer_view *view,
                         const stage *g)
 {
@@ -436,6 +438,7 @@ static void add_stage(layout *lay, const stage *g)
     layout_add_hit(lay, (hit_area){PANEL_ARM, PART_BODY, 0, place});
 }
 
+// The arm, if wanted with its contact from near by, and what is to be said of it.
 static void draw_arm(const explorer_model *model, const explorer_view *view, layout *lay,
                      screen *s, area a)
 {

@@ -2,6 +2,7 @@
 // instant.
 #include "ui/explorer/panels/panel.h"
 
+// A change in a line: its number, a sign, its instant and what it changes.
 static void draw_input(const explorer_model *model, screen *s, area a, int index)
 {
     enum { WHEN_AT = 6, WHEN = 15, WHAT_AT = 22 }; // columns
@@ -26,6 +27,7 @@ static void draw_input(const explorer_model *model, screen *s, area a, int index
     area_text(s, area_right(a, WHAT_AT), colour, text);
 }
 
+// What the hollow sign means, or how to make a change.
 static void draw_input_edges(const explorer_model *model, screen *s, area a)
 {
     const area foot = area_row(a, a.height - 1);
@@ -36,6 +38,7 @@ static void draw_input_edges(const explorer_model *model, screen *s, area a)
     }
 }
 
+// How many changes there are.
 static int input_count(const explorer_model *model)
 {
     return model->session.input_count;
@@ -53,6 +56,7 @@ static void select_input(explorer_model *model, explorer_view *view, int index)
     view->change = index;
 }
 
+// What a key does with the selected change; any other closes the page.
 static bool press_change_key(explorer_model *model, explorer_view *view,
                              explorer_input *input, int key, int index)
 {

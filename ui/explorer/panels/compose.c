@@ -41,6 +41,7 @@ static void write_title(const scenario *base, char *text, size_t size)
     text_add(text, size, "%s", scenario_changes(base, given));
 }
 
+// The first row: the scenario's name and title, and how many changes there are.
 static void draw_title(const explorer_model *model, screen *s)
 {
     enum { NAME_OF_LAB = 12, LEAST_TITLE = 8 }; // cells
@@ -95,6 +96,7 @@ static void bar_add(bar *b, int rank, const char *format, ...)
     va_end(list);
 }
 
+// Clears a row of the screen.
 static void blank_row(screen *s, int y)
 {
     for (int x = 0; x < s->width; x++) {
@@ -212,6 +214,7 @@ static bar status_bar(const explorer_model *model, const explorer_view *view)
     return b;
 }
 
+// The row that says what the run does and where the cursor is.
 static void draw_status(const explorer_model *model, const explorer_view *view, screen *s,
                         int y)
 {
@@ -524,6 +527,7 @@ static area draw_lesson_strip(const explorer_model *model, const explorer_view *
     return area_below(a, rows);
 }
 
+// The arm with the curves below it on the left, the stack on the right.
 static void draw_panels(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area body)
 {

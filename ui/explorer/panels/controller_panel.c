@@ -85,6 +85,7 @@ static void draw_lock(const explorer_model *model, const explorer_view *view, sc
     }
 }
 
+// A line of the table: name, value and unit of a quantity.
 static void draw_quantity(screen *s, area a, const char *name, double value,
                           const char *unit)
 {
@@ -169,6 +170,7 @@ static int controller_rows(const explorer_model *model, const explorer_view *vie
     return 0;
 }
 
+// Modes, lock and command of the law, then its readings as there is room.
 static void draw_controller(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area a)
 {

@@ -44,6 +44,7 @@ static void turn_wheel_on_curves(const explorer_model *model, explorer_view *vie
     }
 }
 
+// The nearest number to a value that is not beyond two others.
 static int kept_between(int value, int low, int high)
 {
     if (value < low) {
@@ -106,6 +107,7 @@ static bool scrub(explorer_model *model, explorer_view *view, const panel_gestur
     return true;
 }
 
+// Over the curves a drag moves the cursor, with Control it draws a box.
 static bool point_at_plot(explorer_model *model, explorer_view *view,
                           explorer_input *input, const panel_gesture *g)
 {

@@ -63,6 +63,7 @@ static line_style free_line_style(const pane_look *look, int curves, line_style 
     return style;
 }
 
+// Chooses a line and a colour for each signal of a pane, the first ones first.
 static pane_look pane_look_of(const explorer_view *view, const pane *p)
 {
     pane_look look;
@@ -554,6 +555,7 @@ static void draw_pane(const explorer_model *model, const explorer_view *view, la
 
 enum { TIME_AXIS = 2 }; // rows
 
+// How many panes are shown.
 static int count_shown_panes(const pane_set *panes)
 {
     int count = 0;
@@ -597,6 +599,7 @@ static void tint_box(const zoom_box *b, screen *s)
     area_tint(s, (area){left, top, width, height}, INK_SELECTED);
 }
 
+// The panes with the time axis and the lanes below them.
 static void draw_curves(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area a)
 {

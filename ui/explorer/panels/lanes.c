@@ -175,6 +175,7 @@ static bool any_row_above(const trace *t, double from, double to, int signal,
     return false;
 }
 
+// The mode of the law at an instant [s], none without a law.
 static lane_band mode_band(const explorer_model *model, const trace *t, double time)
 {
     enum { COLOURS = 6 }; // of modes
@@ -377,6 +378,7 @@ static void draw_run_map(const explorer_model *model, const explorer_view *view,
     screen_put(s, line.x + now, line.y, GLYPH_CURSOR, INK_TITLE);
 }
 
+// What a lane shows: of other runs contact, with the name of the run.
 static void draw_lane_label(const explorer_model *model, screen *s, area a, lane l)
 {
     if (l.run > 0) {

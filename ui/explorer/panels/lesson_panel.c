@@ -3,6 +3,7 @@
 
 enum { STEP_LINES = 7, STEP_TEXT = 1024 }; // at most
 
+// The step of the lesson at which its reader is.
 static const lesson_step *step_of_lesson(const explorer_model *model)
 {
     return &model->session.base.lesson.steps[model->lesson.step];
@@ -36,6 +37,7 @@ static const char *wanted_key(const explorer_model *model)
     return "do it, y asks for a hint";
 }
 
+// As many rows as the step takes at this width, in a frame; none without a lesson.
 static int lesson_rows(const explorer_model *model, const explorer_view *view,
                        screen_size body)
 {
@@ -49,6 +51,7 @@ static int lesson_rows(const explorer_model *model, const explorer_view *view,
     return 2 + text_wrap(text, body.width - 4, lines, STEP_LINES, NULL);
 }
 
+// The step in a frame whose title says how far the lesson is.
 static void draw_lesson(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area a)
 {

@@ -5,6 +5,7 @@
 
 enum { MOST_LATER = 32 }; // changes to come that are listed
 
+// What a change of the script sets, as a path and a value.
 static void draw_changed_value(const explorer_model *model, screen *s, area a,
                                const event *v)
 {
@@ -21,6 +22,7 @@ static void draw_changed_value(const explorer_model *model, screen *s, area a,
     area_text(s, a, INK_EVENT, text);
 }
 
+// An entry of the log in a line.
 static void draw_log_entry(const explorer_model *model, screen *s, area a,
                            const log_entry *entry)
 {
@@ -55,12 +57,14 @@ typedef struct listed_entries {
     int current; // the last one up to the cursor
 } listed_entries;
 
+// Whether an entry is a change or a push.
 static bool is_input(const explorer_model *model, const log_entry *entry)
 {
     return entry->event >= 0 &&
            event_is_input(model->session.run.trace.events[entry->event].kind);
 }
 
+// Finds what is listed where the cursor is.
 static listed_entries list_entries(const explorer_model *model)
 {
     const session *e = &model->session;
@@ -83,6 +87,7 @@ static listed_entries list_entries(const explorer_model *model)
     return listed;
 }
 
+// The entry of the log that is listed in a line.
 static const log_entry *listed_entry(const run_log *log, const listed_entries *listed,
                                      int index)
 {
@@ -92,6 +97,7 @@ static const log_entry *listed_entry(const run_log *log, const listed_entries *l
     return &log->entries[listed->later[index - (int)listed->seen]];
 }
 
+// A quarter of a tall screen, nothing of others.
 static int log_rows(const explorer_model *model, const explorer_view *view,
                     screen_size body)
 {
@@ -103,6 +109,7 @@ static int log_rows(const explorer_model *model, const explorer_view *view,
     return 0;
 }
 
+// The lines round the cursor, or those to which the panel is scrolled.
 static void draw_log(const explorer_model *model, const explorer_view *view, layout *lay,
                      screen *s, area a)
 {

@@ -1,6 +1,7 @@
 // The page of notes: what was said at which instant.
 #include "ui/explorer/panels/panel.h"
 
+// A note in a line: its instant, and as many of its words as there is room for.
 static void draw_note(const explorer_model *model, screen *s, area a, int index)
 {
     enum { WHEN = 11, WHAT_AT = 13 }; // columns
@@ -9,6 +10,7 @@ static void draw_note(const explorer_model *model, screen *s, area a, int index)
     area_words(s, area_right(a, WHAT_AT), INK_TEXT, n->text);
 }
 
+// How to make a note where there is none.
 static void draw_note_edges(const explorer_model *model, screen *s, area a)
 {
     if (model->note_count == 0) {
@@ -16,6 +18,7 @@ static void draw_note_edges(const explorer_model *model, screen *s, area a)
     }
 }
 
+// How many notes there are.
 static int note_count(const explorer_model *model)
 {
     return model->note_count;
@@ -33,6 +36,7 @@ static void select_note(explorer_model *model, explorer_view *view, int index)
     view->note = index;
 }
 
+// What a key does with the selected note; any other closes the page.
 static bool press_note_key(explorer_model *model, explorer_view *view,
                            explorer_input *input, int key, int index)
 {

@@ -15,11 +15,13 @@ typedef struct plane {
     value_range x, y;
 } plane;
 
+// The column of dots at which a value across lies.
 static double dot_x(const plane *p, double x)
 {
     return (x - p->x.low) / (p->x.high - p->x.low) * (2.0 * p->canvas.width - 1);
 }
 
+// The row of dots at which a value up lies.
 static double dot_y(const plane *p, double y)
 {
     return (p->y.high - y) / (p->y.high - p->y.low) * (4.0 * p->canvas.height - 1);
@@ -38,6 +40,7 @@ static void draw_ends(screen *s, area a, value_range x, const char *name)
 
 // --- one signal over another -----------------------------------------------------------
 
+// Widens a range by the values of a signal between two instants [s].
 static void widen_by(value_range *r, const trace *t, int signal, double from, double to)
 {
     const size_t last = trace_row_at(t, to);
@@ -46,6 +49,7 @@ static void widen_by(value_range *r, const trace *t, int signal, double from, do
     }
 }
 
+// The path of the second signal of a pane over its first between two instants [s].
 static void draw_path(const plane *p, const trace *t, const pane *of, double from,
                       double to, ink colour)
 {
@@ -146,6 +150,7 @@ static int lines_that_matter(const double *amplitude)
 // rounding.
 #define ROUNDING 1e-12
 
+// The largest absolute value.
 static double largest_size(const double *series, int count)
 {
     double largest = 0;

@@ -292,6 +292,7 @@ int page_scroll(layout *lay, panel_id id, area a, int lines, int head)
 
 // --- lists -----------------------------------------------------------------------------
 
+// The title of a list for so many lines on a page of this width [cells].
 static const char *list_title(const page_list *list, int count, int width)
 {
     enum { NARROW = 60 };

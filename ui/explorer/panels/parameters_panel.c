@@ -37,6 +37,7 @@ static bool find_track(const explorer_view *view, const parameters *p, track *k)
     return found;
 }
 
+// A slider: its line, and the knob where the value is.
 static void draw_track(layout *lay, screen *s, area a, const track *k)
 {
     for (int i = 0; i < a.width; i++) {
@@ -202,6 +203,7 @@ static void draw_wide_slider(const explorer_model *model, layout *lay, screen *s
     draw_track(lay, s, between, k);
 }
 
+// The frame, whose title says by what the list is filtered, or the keys.
 static void draw_parameters_frame(const explorer_view *view, screen *s, area a)
 {
     enum { WIDE = 46 };
@@ -227,6 +229,7 @@ static bool selected_line_expands(const explorer_model *model, const explorer_vi
     return has_slider || model_inert_reason(model, chosen) != NULL;
 }
 
+// The lines of the list from the one on that lets the selected one be seen.
 static void draw_parameter_list(const explorer_model *model, const explorer_view *view,
                                 layout *lay, screen *s, area a)
 {

@@ -30,11 +30,13 @@ void plot_frame_open(const explorer_view *view, plot_frame *f)
                              .line = pixels->cell_height >= LARGE_CELL ? 2 : 1.5};
 }
 
+// The column of dots at which an instant [s] lies.
 static double plot_x(const plot_frame *f, double time)
 {
     return (time - f->from) / (f->to - f->from) * (2.0 * f->canvas.width - 1);
 }
 
+// The row of dots at which a value lies.
 static double plot_y(const plot_frame *f, double value)
 {
     return (f->axis.high - value) / (f->axis.high - f->axis.low) *
@@ -128,6 +130,7 @@ colour picture_colour(const screen *s, colour_theme theme, ink i)
     return (colour){c.red / 255.0, c.green / 255.0, c.blue / 255.0};
 }
 
+// The colour of an ink in the picture of a pane.
 static colour pixel_colour(const plot_frame *f, ink i)
 {
     return picture_colour(f->canvas.screen, f->theme, i);

@@ -194,6 +194,8 @@ static void draw_outcome(const session *e, screen *s, area line, bool touches, s
     }
 }
 
+// What the predictors say of a touch now, or in contact of the one that there was, a line
+// each, and below them what came.
 static void draw_predictors(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area a)
 {

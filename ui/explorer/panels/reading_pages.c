@@ -41,6 +41,7 @@ typedef struct page {
     int column; // where meanings begin, behind the keys
 } page;
 
+// Another line of a page, empty; those that have no room on it are lost.
 static help_line *new_line(page *p)
 {
     static help_line beyond; // what has no room on the page
@@ -94,6 +95,7 @@ static void add_text(page *p, const char *format, ...)
     add_column(p, 0, text, NULL);
 }
 
+// A heading, with a blank line before it unless it is the first of the page.
 static void add_heading(page *p, const char *title)
 {
     if (p->count > 0) {
@@ -244,6 +246,7 @@ static area draw_page(const explorer_view *view, layout *lay, screen *s, area bo
     return a;
 }
 
+// All keys and commands, or those that pass the filter.
 static void draw_help(const explorer_model *model, const explorer_view *view, layout *lay,
                       screen *s, area body)
 {
@@ -276,6 +279,7 @@ static void add_script_line(page *p, const action *a)
     snprintf(line, LINE_TEXT, "%9.5f s  %s = %s", a->time, action_path(a, path), value);
 }
 
+// Whether the last line of a page is a blank one.
 static bool ends_with_blank(const page *p)
 {
     return p->count > 0 && p->lines[p->count - 1].text[0] == '\0';
@@ -369,12 +373,14 @@ static void explain_signals(const explorer_view *view, page *p)
     }
 }
 
+// What an event is.
 static void explain_event(const event *e, page *p)
 {
     add_heading(p, "the event at the cursor");
     add_text(p, "%s: %s.", event_name(e->kind), event_description((int)e->kind));
 }
 
+// What is selected, in focus and at the cursor, in sentences.
 static void draw_explain(const explorer_model *model, const explorer_view *view,
                          layout *lay, screen *s, area body)
 {
@@ -415,6 +421,7 @@ const panel welcome_panel = {.name = "welcome", .draw = draw_welcome, .key = pag
 
 // --- the account of the run ------------------------------------------------------------
 
+// The course of the run in sentences.
 static void draw_why(const explorer_model *model, const explorer_view *view, layout *lay,
                      screen *s, area body)
 {
@@ -531,6 +538,7 @@ static void draw_shapes(screen *s, area a, const parameters *values)
     }
 }
 
+// The poles of the arm with these values in each place near rest.
 static void write_poles(page *p, const parameters *values)
 {
     add_text(p, "The arm near rest with the values at the cursor, without its law.");
@@ -541,6 +549,7 @@ static void write_poles(page *p, const parameters *values)
     }
 }
 
+// The poles, and below them the shapes of the lowest modes.
 static void draw_poles(const explorer_model *model, const explorer_view *view,
                        layout *lay, screen *s, area body)
 {

@@ -9,6 +9,7 @@
 
 enum { SAMPLE = 4, PEAK = 10 }; // columns of a line's sample and of a peak [cells]
 
+// A row for each run in a frame, none without a pinned one or without room.
 static int runs_rows(const explorer_model *model, const explorer_view *view,
                      screen_size body)
 {
@@ -54,6 +55,7 @@ static void pinned_look(const explorer_model *model, const explorer_view *view, 
     }
 }
 
+// The present run and those that are pinned, a line each.
 static void draw_runs(const explorer_model *model, const explorer_view *view, layout *lay,
                       screen *s, area a)
 {
@@ -142,6 +144,7 @@ static void draw_pinned_edges(const explorer_model *model, screen *s, area a)
     area_text(s, area_row(a, a.height - 1), INK_DIM, keys);
 }
 
+// How many runs are pinned.
 static int pinned_count(const explorer_model *model)
 {
     return model->pinned.count;
@@ -159,6 +162,7 @@ static void select_run(explorer_model *model, explorer_view *view, int index)
     model->pinned.selected = index;
 }
 
+// What a key does with the selected run; any other closes the page.
 static bool press_pinned_key(explorer_model *model, explorer_view *view,
                              explorer_input *input, int key, int index)
 {
@@ -210,6 +214,7 @@ typedef struct compared {
     bool differs;
 } compared;
 
+// Compares the quantity of the summary with that index.
 static compared compare_quantity(const session *e, int index)
 {
     compared c = {.value = summary_value(&e->run.summary, index), .other = (double)NAN};
@@ -234,6 +239,7 @@ typedef struct comparison_layout {
     int width;   // of a number [cells]
 } comparison_layout;
 
+// The layout on a screen of this width [cells].
 static comparison_layout comparison_layout_for(int screen_width)
 {
     enum { NAMES = 30, NUMBER = 12, NARROW_NUMBER = 11 };
@@ -275,6 +281,7 @@ static void draw_compared(const session *e, screen *s, area line, compared c, in
     area_text(s, line, colour, columns);
 }
 
+// The name of a quantity with its unit.
 static void draw_summary_name(screen *s, area line, const summary_info *info, ink colour)
 {
     if (info->unit[0] != '\0') {
@@ -307,6 +314,7 @@ static void draw_quantities(const session *e, screen *s, area a,
     }
 }
 
+// The page that compares the numbers of this run with those of the baseline.
 static void draw_comparison(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area body)
 {

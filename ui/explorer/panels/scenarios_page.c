@@ -69,6 +69,7 @@ static void draw_preview(const scenario_menu *menu, screen *s, area a)
     area_lines(s, room, INK_TEXT, lines, count);
 }
 
+// The page: the filter, the scenarios that pass it, and what the selected one is about.
 static void draw_scenarios(const explorer_model *model, const explorer_view *view,
                            layout *lay, screen *s, area body)
 {
@@ -146,6 +147,7 @@ static bool press_filter_key(explorer_model *model, explorer_view *view,
     return true;
 }
 
+// Moves the selection, opens what is selected, begins a filter or closes the page.
 static bool press_scenarios_key(explorer_model *model, explorer_view *view,
                                 explorer_input *input, int key)
 {

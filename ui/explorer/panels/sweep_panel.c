@@ -66,6 +66,7 @@ typedef struct chart_point {
     double x, y;
 } chart_point;
 
+// Where the metric of a run lies.
 static chart_point point_on_chart(const lab_sweep *sweep, const canvas *c,
                                   value_range range, int run)
 {
@@ -76,6 +77,7 @@ static chart_point point_on_chart(const lab_sweep *sweep, const canvas *c,
                          .y = share_down * (4.0 * c->height - 1)};
 }
 
+// A sign in the cell of a point, none for a run that has no such number.
 static void mark_on_chart(screen *s, const canvas *c, chart_point at, uint32_t glyph,
                           ink shade)
 {
@@ -271,6 +273,8 @@ static void write_sweep_title(char *title, size_t size, const lab_sweep *sweep, 
     }
 }
 
+// The metric of the sweep: as a map of two parameters, or as a chart over one with the
+// runs below it.
 static void draw_sweep(const explorer_model *model, const explorer_view *view,
                        layout *lay, screen *s, area a)
 {

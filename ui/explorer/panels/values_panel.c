@@ -29,6 +29,7 @@ typedef struct compared_values {
     const char *name;  // in the title
 } compared_values;
 
+// Finds what the values at the cursor are compared with.
 static void find_compared_values(const explorer_model *model, const explorer_view *view,
                                  compared_values *c)
 {
@@ -53,6 +54,7 @@ typedef struct value_columns {
     bool units;
 } value_columns;
 
+// The columns in so many cells, with a second number if values are compared.
 static value_columns value_columns_for(int room, bool compares)
 {
     const int numbers = compares ? 2 * NUMBER : NUMBER;
@@ -76,6 +78,7 @@ static void draw_difference(screen *s, area a, int signal, double value, double 
     screen_print(s, a.x, a.y, NUMBER, shade, "%9s", text);
 }
 
+// A signal's name, value, difference and unit in a line.
 static void draw_value(screen *s, area line, int signal, const sample *row,
                        const sample *other, value_columns columns)
 {
@@ -98,6 +101,7 @@ static void draw_value(screen *s, area line, int signal, const sample *row,
     }
 }
 
+// The signals that the filter lets through, each with its value at the cursor.
 static void draw_values(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area a)
 {
@@ -142,6 +146,7 @@ const panel values_panel = {.name = "values", .draw = draw_values, .wheel = WHEE
 
 enum { SIGNAL_ROWS = 3 };
 
+// Whether a signal is among those already found.
 static bool has_signal(const int *signals, int count, int signal)
 {
     for (int i = 0; i < count; i++) {
@@ -230,6 +235,7 @@ static void draw_signal_statistics(screen *s, area a, int signal,
     }
 }
 
+// The statistics of signals between two instants, as many as there is room for.
 static void draw_statistics(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area a)
 {
