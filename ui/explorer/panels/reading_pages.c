@@ -518,9 +518,9 @@ static void draw_shapes(screen *s, area a, const parameters *values)
     arm m;
     int count = 0;
     arm_init(&m, values);
-    const size_t dof = (size_t)m.dof;
+    const size_t dof = (size_t)m.dof, shape_values = dof * dof;
     g_autofree double *frequencies = g_new0(double, dof); // [rad/s]
-    g_autofree double *shapes = g_new0(double, dof *dof);
+    g_autofree double *shapes = g_new0(double, shape_values);
     if (modes_compute(&m, HUB_FREE, TIP_FREE, &count, frequencies, shapes) != STATUS_OK) {
         return;
     }
