@@ -64,7 +64,9 @@ static void put_capability(FILE *stream, const char *name, int number)
     }
 }
 
-// One of 16 or 256 colours: terminals of eight show the bright ones as bold.
+// Selects one of 16 or 256 colours, by the terminal's description if that knows so many,
+// else by the usual sequence. Of the bright ones (from 8 on) a terminal of eight colours
+// has the dark one, which put_coloured_ink makes bold.
 static void put_indexed(FILE *stream, int index, colour_depth depth)
 {
     const bool described = COLORS >= 8 && COLORS <= 256;

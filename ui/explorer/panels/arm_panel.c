@@ -293,7 +293,7 @@ static void draw_dots(const explorer_model *model, const explorer_view *view,
 
 // --- as pixels -------------------------------------------------------------------------
 
-// The same as a picture, which render/scene paints.
+// The arm with all that is around it as a picture, which render/scene paints.
 static void draw_pixels(const explorer_model *model, const explorer_view *view,
                         const stage *g)
 {

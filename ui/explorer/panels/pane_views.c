@@ -70,6 +70,8 @@ static bool draw_phase(const explorer_model *model, const explorer_view *view, s
 {
     const session *e = &model->session;
     const trace *t = model_run(model, 0).trace;
+
+    // the ranges of both signals
     value_range x = value_range_empty, y = value_range_empty;
     double from, to;
     view_window(model, view, &from, &to);
@@ -82,6 +84,8 @@ static bool draw_phase(const explorer_model *model, const explorer_view *view, s
                      value_range_opened(x),
                      value_range_opened(y)};
     *axis = p.y;
+
+    // the present run over the baseline
     if (e->has_other && !model->difference.on) {
         draw_path(&p, &e->other.trace, of, from, to, INK_OTHER);
     }

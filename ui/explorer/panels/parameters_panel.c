@@ -253,6 +253,7 @@ static void draw_parameter_list(const explorer_model *model, const explorer_view
     const int rows = expands ? count + 1 : count;
     const int first = draw_first_line(selected, rows, inside.height);
 
+    // those behind it are a row further down
     for (int i = 0; i < count; i++) {
         int row = i - first;
         if (expands && i > selected) {
