@@ -61,7 +61,11 @@
         "$k_2$, wall's angle", "hub", "wrong wall: wrong force")                         \
     LAW(ADMITTANCE, admittance, "admittance", TOLD_HUB, TOLD_ARM | HAS(TOLD_DELAY), "",  \
         "the force's error moves a mass that the hub follows under position control",    \
-        "damping", "hub, force", "slow")
+        "damping", "hub, force", "slow")                                                 \
+    LAW(TOUCH, touch, "touch", TOLD_PATH | HAS(TOLD_DELAY) | HAS(TOLD_LINKS), 0, "",     \
+        "no faster to the wall than the force allows, then a passive hub whose rest "    \
+        "moves: for a small board",                                                      \
+        "model, rough", "hub, force", "heavy tips that walls throw back")
 
 // Values of control.law.
 typedef enum control_law {

@@ -1,0 +1,524 @@
+// A law for a small board: comes to a wall whose place is only roughly known, without
+// vibration and no faster than the commanded force allows, and presses by a passive hub
+// whose rest moves. No estimator of the arm, no search, 26 numbers and a page of states.
+//
+// Travel. The hub's speed changes in ramps that last one period of the arm's free mode,
+// after which the beam does not vibrate (Singer and Seering, ASME Journal of Dynamic
+// Systems, Measurement and Control 112, 1990). The last stretch before the believed wall
+// goes at the touch speed v = v0 + v1 f: what the force f takes up in a time, m v/f, is
+// then much the same for every f. Behind the believed wall it goes faster and faster.
+//
+// Touch. The sensor feels the wall, or the hub's rate jumps by more than torque and beam
+// explain: between two samples at 200 Hz a tip can strike and leave unread. The tip's
+// place is the mean of the hub's angle and the last link's, which follows from the hub's
+// motion by the beam's equation
+//
+//     J2 phi'' + a theta'' = -k2 (phi - theta),    a = m l^2/2,  J2 = I + m l^2/4.
+//
+// Press. A spring and a damper tie the hub to a rest that moves so that the beam bends
+// for a planned force p, theta_r = theta_touch + p L/k_hub. The plan grows by
+//
+//     p' = (f - p)/tau, within -b (p + p0) and b (p + p0),
+//
+// at first with the touch speed, and no faster than a tip that answers a push of the hub
+// the wrong way at first (a non-minimum-phase zero) can follow. An integral of p less the
+// reading works in unbroken contact only. The damper stays below c J/lag, where lag is
+// that of the loop, so that the hub remains passive.
+//
+// Back. Where the wall has not been felt for a while, plan and integral decay, and the
+// rest creeps from a little behind the place of touch towards it, faster and faster.
+#include <string.h>
+
+#include "src/base/sincos.h"
+#include "src/rig/laws/laws.h"
+
+enum { TRAVEL, PRESS, BACK };
+static const char *const mode_names[] = {"travel", "press", "back", NULL};
+
+enum {
+    FORCE_WANTED,
+    THRESHOLD,
+    TOUCH_SPEED,
+    TOUCH_SPEED_PER_NEWTON,
+    SLOW_BEFORE,
+    SLOW_BEHIND,
+    SEARCH,
+    CRUISE,
+    TRAVEL_DAMPING,
+    TRAVEL_STIFFNESS,
+    TRAVEL_FRICTION,
+    PRESS_DAMPING,
+    PRESS_STIFFNESS,
+    PRESS_FRICTION,
+    DAMPING_LIMIT,
+    GROWTH,
+    RISE_TIME,
+    RISE_INERTIA,
+    LAG_LIMIT,
+    INTEGRAL,
+    DEAD_BAND,
+    UNBROKEN,
+    FORGET,
+    LOST,
+    DECAY,
+    LANDING_SPEED,
+    BACK_STIFFNESS,
+    DROP,
+    FELT,
+    JUMP,
+    CORRECTION,
+    PARAMETERS
+};
+static const controller_parameter table[PARAMETERS] = {
+    [FORCE_WANTED] = {.name = "force"},
+    [THRESHOLD] = {.name = "contact_threshold"},
+    [TOUCH_SPEED] = {"touch_speed", "m/s", 0.1, 0, 1, "speed of the tip at the wall"},
+    [TOUCH_SPEED_PER_NEWTON] = {"touch_speed_per_newton", "m/s/N", 0.0329, 0, 1,
+                                "and what each newton of the command adds to it"},
+    [SLOW_BEFORE] = {"slow_before", "rad", 0.0103, 0, 1,
+                     "way before the believed wall at that speed"},
+    [SLOW_BEHIND] = {"slow_behind", "rad", 0.0239, 0, 1,
+                     "way behind the believed wall at that speed"},
+    [SEARCH] = {"search", "m/s2", 0.953, 0, 10, "acceleration of the tip after that"},
+    [CRUISE] = {"cruise", "", 0.112, 0.1, 4,
+                "least time of travel, in periods of the free mode"},
+    [TRAVEL_DAMPING] = {"travel_damping", "N m s/rad", 8.07, 0, 10,
+                        "of the hub about its path"},
+    [TRAVEL_STIFFNESS] = {"travel_stiffness", "N m/rad", 0.782, 0, 100,
+                          "of the hub about its path"},
+    [TRAVEL_FRICTION] = {"travel_friction", "", 0.559, 0, 2,
+                         "share of the friction that is compensated on the way"},
+    [PRESS_DAMPING] = {"press_damping", "N m s/rad", 0.449, 0, 10,
+                       "of the hub about its rest"},
+    [PRESS_STIFFNESS] = {"press_stiffness", "N m/rad", 1.14, 0, 100,
+                         "of the hub about its rest"},
+    [PRESS_FRICTION] = {"press_friction", "", 0.0983, 0, 2,
+                        "share of the friction that is compensated pressing"},
+    [DAMPING_LIMIT] = {"damping_limit", "", 0.356, 0, 10,
+                       "largest damping, times the loop's lag over the hub's inertia"},
+    [GROWTH] = {"growth", "1/s", 4.78, 0.1, 100, "of the planned force at first"},
+    [RISE_TIME] = {"rise_time", "s", 0.0571, 0.001, 1,
+                   "time constant of the planned force at last"},
+    [RISE_INERTIA] = {"rise_inertia", "", 0.434, 0, 3,
+                      "share of the inertia's torque that is fed forward"},
+    [LAG_LIMIT] = {"lag_limit", "s", 0.0128, 0.001, 1,
+                   "lag of the loop beyond which the plan is slower"},
+    [INTEGRAL] = {"integral", "1/s", 4.28, 0, 100, "of the force's error"},
+    [DEAD_BAND] = {"dead_band", "", 0.0426, 0, 0.2,
+                   "error that it leaves, as a share of the command"},
+    [UNBROKEN] = {"unbroken", "s", 0.0513, 0, 1, "contact after which it works"},
+    [FORGET] = {"forget", "s", 0.132, 0.002, 10,
+                "in which the rest takes on the hub's angle in contact"},
+    [LOST] = {"lost", "s", 0.0711, 0, 1, "time without the wall after which it is lost"},
+    [DECAY] = {"decay", "1/s", 7.63, 0, 100, "of plan and integral then"},
+    [LANDING_SPEED] = {"landing_speed", "m/s/N", 0.207, 0.001, 1,
+                       "speed of the tip that comes back, for each newton"},
+    [BACK_STIFFNESS] = {"back_stiffness", "N m/rad", 0.72, 0, 100,
+                        "of the hub while the wall is lost"},
+    [DROP] = {"drop", "rad", 0.00549, 0, 0.2,
+              "by which it then stays behind the place of touch"},
+    [FELT] = {"felt", "", 0.673, 0.1, 2, "share of contact_threshold that is a touch"},
+    [JUMP] = {"jump", "rad/s", 0.118, 0.005, 10, "of the hub's rate that is a blow"},
+    [CORRECTION] = {"correction", "", 0.0877, 0, 1,
+                    "share of an unexplained rate that corrects the last link"},
+};
+
+enum { DELAYED = 7 }; // periods of delay that the reference is kept for, at most
+
+#define LAG_OF_SENSORS    2e-3 // what filters of the sensors add to the loop's lag [s]
+#define FASTEST           1.0  // travel of the hub [rad/s]
+#define FRICTION_RATE     0.03 // within which compensated friction turns round [rad/s]
+#define STICTION_RATE     0.02 // the same of the hub's own [rad/s]
+#define FASTEST_SEARCH    0.3  // [rad/s]
+#define LARGEST_LAG_ERROR 0.05 // of the angle that the spring answers to [rad]
+#define INERTIA_SHARE     0.1  // of the beam's part that the damper may count on
+#define AHEAD_OF_WALL     0.05 // a blow further before the believed wall is none [rad]
+#define RETURN_TIME       0.2  // in which the landing speed doubles [s]
+
+// The arm as it is told, and what follows from it.
+typedef struct touch_design {
+    double length;        // L = 2 l [m]
+    double inertia;       // of the rigid arm about the hub, J [kg m2]
+    double hub_inertia;   // of hub and first link, A [kg m2]
+    double link_inertia;  // of the last link, J2 [kg m2]
+    double coupling;      // a of both [kg m2]
+    double pressed;       // of the arm in contact [kg m2]
+    double hub_stiffness; // of the hub against a tip on the wall [N m/rad]
+    double frequency;     // of the free mode [rad/s]
+    double cosine, sine;  // of its turn in a period
+    double compliance;    // of the hub in it, 1/Jh - 1/J [1/(kg m2)]
+    double touch_rate;    // of the hub at the wall [rad/s]
+    double landing_rate;  // of one that comes back [rad/s]
+    double travel_damping, press_damping; // within the limit [N m s/rad]
+    double slowness;                      // of the plan, 1 where the loop lags little
+    int late;                             // periods until a command acts
+} touch_design;
+
+typedef struct touch_memory {
+    controller_setup rig;
+    double p[PARAMETERS];
+    touch_design design;
+    bool started;
+    int mode;
+
+    // the hub, by the tachometer, whose offset is learned from the encoder
+    double angle, rate, offset; // [rad], [rad/s]
+
+    // the last link under the hub's motion: J2 phi + a theta and its rate
+    double momentum, momentum_rate;
+    double angle_before, rate_before; // of the hub at the sample before
+    double jump_before;               // of its rate, unexplained [rad/s]
+    double last_link;                 // phi [rad]
+    double commands[DELAYED + 1];     // [V], the last one first
+
+    // the path: cruise speed, its end, the rigid arm's angle and rate, the free mode's
+    double cruise_rate, cruise_end; // [rad/s], [s]
+    double time;                    // since the start [s]
+    double path, path_rate;         // [rad], [rad/s]
+    double search_rate;             // behind the believed wall [rad/s]
+    double mode_angle, mode_rate;   // in units of torque
+    double hub_path[DELAYED + 1], hub_path_rate[DELAYED + 1]; // of the last samples
+
+    // pressing
+    double plan;             // p [N]
+    double first_plan;       // p0 [N]
+    double rest, rest_rate;  // theta_r [rad], [rad/s]
+    double touched;          // the place of touch [rad]
+    double slack;            // by which the hub rests elsewhere [rad]
+    double integral;         // [N m]
+    double unfelt, unbroken; // time since the wall was felt, and felt without a break [s]
+} touch_memory;
+
+static double bounded(double x, double low, double high)
+{
+    return fmax(low, fmin(x, high));
+}
+
+// --- design ----------------------------------------------------------------------------
+
+// How stiff the hub of a chain of n links is against a tip on the wall: each joint has
+// k2 n/2, and joint i takes the share i/n of the hub's torque.
+static double stiffness_at_hub(const controller_setup *rig)
+{
+    const int links = rig->links > 2 ? rig->links : 2;
+    double squares = 0;
+    for (int i = 1; i < links; i++) {
+        const double share = (double)i / links;
+        squares += share * share;
+    }
+    return rig->k2 * links / 2 / squares;
+}
+
+static void design_arm(touch_design *d, const controller_setup *rig)
+{
+    const double l = rig->link_length, ml2 = rig->link_mass * l * l;
+    d->length = 2 * l;
+    d->hub_inertia = rig->hub_inertia + rig->link_inertia + 1.25 * ml2;
+    d->coupling = ml2 / 2;
+    d->link_inertia = rig->link_inertia + ml2 / 4;
+    d->inertia = d->hub_inertia + 2 * d->coupling + d->link_inertia;
+    d->pressed = pressed_inertia(rig);
+    d->hub_stiffness = stiffness_at_hub(rig);
+
+    // the mode of the free arm, hub and last link against one another
+    const double determinant =
+        d->hub_inertia * d->link_inertia - d->coupling * d->coupling;
+    d->frequency = sqrt(rig->k2 * d->inertia / determinant);
+    d->compliance = d->link_inertia / determinant - 1 / d->inertia;
+    inline_sincos(d->frequency * rig->period, &d->sine, &d->cosine);
+}
+
+static const char *tune(void *memory, const controller_setup *setup)
+{
+    touch_memory *m = memory;
+    touch_design *d = &m->design;
+    if (!(setup->torque_per_volt > 0)) {
+        return "it needs a motor with torque";
+    }
+    m->rig = setup_kept(setup);
+    memcpy(m->p, setup->parameters, sizeof m->p);
+    design_arm(d, setup);
+
+    const double force = fabs(m->p[FORCE_WANTED]);
+    d->touch_rate =
+        (m->p[TOUCH_SPEED] + m->p[TOUCH_SPEED_PER_NEWTON] * force) / d->length;
+    d->landing_rate = m->p[LANDING_SPEED] * force / d->length;
+
+    // what the loop's lag leaves of the dampers, and of the plan's speed
+    const double lag = setup->delay + setup->period / 2 + LAG_OF_SENSORS;
+    const double behind_spring =
+        1 / (d->compliance + 1 / d->inertia) - setup->hub_inertia;
+    const double most =
+        m->p[DAMPING_LIMIT] * (setup->hub_inertia + INERTIA_SHARE * behind_spring) / lag;
+    d->travel_damping = fmin(m->p[TRAVEL_DAMPING], most);
+    d->press_damping = fmin(m->p[PRESS_DAMPING], most);
+    d->slowness = fmin(1, m->p[LAG_LIMIT] / lag);
+    d->late = (int)fmin(DELAYED - 1, setup->delay / setup->period + 0.5);
+    return NULL;
+}
+
+// --- what is sensed --------------------------------------------------------------------
+
+// The first sample: everything at rest, and the cruise that brings the tip to the slow
+// stretch.
+static void begin(touch_memory *m, double encoder)
+{
+    const touch_design *d = &m->design;
+    const double period = 2 * M_PI / d->frequency;
+    m->started = true;
+    m->angle = m->angle_before = m->path = encoder;
+    m->momentum = (d->link_inertia + d->coupling) * encoder;
+    for (int i = 0; i <= DELAYED; i++) {
+        m->hub_path[i] = encoder;
+    }
+    const double way = fmax(0, m->rig.wall_angle - m->p[SLOW_BEFORE] - encoder -
+                                   d->touch_rate * period / 2);
+    m->cruise_end = fmax(m->p[CRUISE] * period, way / FASTEST);
+    m->cruise_rate = fmax(d->touch_rate, way / m->cruise_end);
+}
+
+// The hub between its two sensors: the tachometer's integral, drawn to the encoder.
+static void follow_hub(touch_memory *m, const controller_input *in)
+{
+    const double period = m->rig.period;
+    m->angle += period * (in->tachometer - m->offset);
+    const double off = in->encoder - m->angle;
+    m->angle += fmin(1, period / 0.02) * off;
+    m->offset = bounded(m->offset - fmin(0.1, period / 0.5) * off / 0.05, -0.05, 0.05);
+    m->rate = in->tachometer - m->offset;
+}
+
+// Takes the last link over the period before, and returns by how much the hub's rate
+// changed beyond what motor and beam explain [rad/s].
+static double follow_last_link(touch_memory *m)
+{
+    const touch_design *d = &m->design;
+    const controller_setup *rig = &m->rig;
+    const double period = rig->period, a = d->coupling, J2 = d->link_inertia;
+    const double determinant = d->hub_inertia * J2 - a * a;
+
+    // the beam's torque at the middle of the period, and the motor's
+    const double middle = (m->angle + m->angle_before) / 2;
+    const double bend =
+        (m->momentum + m->momentum_rate * period / 2 - a * middle) / J2 - middle;
+    const double beam = -rig->k2 * bend;
+    const double turning = (m->rate_before + m->rate) / 2 / STICTION_RATE;
+    const double motor = rig->torque_per_volt * m->commands[d->late] -
+                         rig->hub_damping * m->rate_before -
+                         rig->stiction * bounded(turning, -1, 1);
+    const double explained = period * ((motor - beam) * J2 - beam * a) / determinant;
+    const double jump = m->rate - m->rate_before - explained;
+
+    m->momentum += m->momentum_rate * period + beam * period * period / 2;
+    m->momentum_rate += beam * period;
+    if (fabs(jump) < m->p[JUMP]) {
+        m->momentum +=
+            m->p[CORRECTION] * jump * determinant * J2 / (period * rig->k2 * (J2 + a));
+    }
+    m->last_link = (m->momentum - a * m->angle) / J2;
+    return jump;
+}
+
+// Whether the tip was struck since the sample before: the hub's rate jumped, after it had
+// not, and the tip may be at the wall.
+static bool is_struck(touch_memory *m)
+{
+    const double jump = follow_last_link(m);
+    const double tip = (m->angle + m->last_link) / 2;
+    const bool struck = fabs(m->jump_before) < m->p[JUMP] / 2 && jump > m->p[JUMP] &&
+                        tip > m->rig.wall_angle - AHEAD_OF_WALL;
+    m->jump_before = jump;
+    m->rate_before = m->rate;
+    m->angle_before = m->angle;
+    return struck;
+}
+
+// --- travel ----------------------------------------------------------------------------
+
+// The free mode over a period under a torque, in units of the torque that its spring
+// balances.
+static void turn_mode(touch_memory *m, double torque)
+{
+    const touch_design *d = &m->design;
+    const double rest = torque / (d->frequency * d->frequency);
+    const double out = m->mode_angle - rest, rate = m->mode_rate / d->frequency;
+    m->mode_angle = rest + d->cosine * out + d->sine * rate;
+    m->mode_rate = d->frequency * (d->cosine * rate - d->sine * out);
+}
+
+// Puts a value before those of the samples before.
+static void remember(double *values, double value)
+{
+    memmove(values + 1, values, DELAYED * sizeof *values);
+    values[0] = value;
+}
+
+// The torque along the path [N m].
+static double travel_torque(touch_memory *m)
+{
+    const touch_design *d = &m->design;
+    const controller_setup *rig = &m->rig;
+    const double period = rig->period, ramp = 2 * M_PI / d->frequency;
+
+    // the rigid arm's speed: up and down in one period of the mode each, then in search
+    const double before = m->path_rate;
+    m->time += period;
+    m->path_rate = m->cruise_rate * bounded(m->time / ramp, 0, 1) -
+                   (m->cruise_rate - d->touch_rate) *
+                       bounded((m->time - m->cruise_end) / ramp, 0, 1);
+    if (m->path > rig->wall_angle + m->p[SLOW_BEHIND]) {
+        const double faster = m->p[SEARCH] / d->length * period;
+        m->search_rate = fmin(m->search_rate + faster, FASTEST_SEARCH);
+    }
+    m->path_rate += m->search_rate;
+    m->path += (before + m->path_rate) / 2 * period;
+    const double inertial = d->inertia * (m->path_rate - before) / period;
+
+    // the hub with the mode that this torque moves; what it does now was asked for late
+    turn_mode(m, inertial);
+    remember(m->hub_path, m->path + d->compliance * m->mode_angle);
+    remember(m->hub_path_rate, m->path_rate + d->compliance * m->mode_rate);
+    const double rate = m->hub_path_rate[0];
+    const double now = m->hub_path[d->late + 1], rate_now = m->hub_path_rate[d->late + 1];
+    return inertial + rig->hub_damping * rate +
+           m->p[TRAVEL_FRICTION] * rig->stiction * bounded(rate / FRICTION_RATE, -1, 1) +
+           d->travel_damping * (rate_now - m->rate) +
+           m->p[TRAVEL_STIFFNESS] *
+               bounded(now - m->angle, -LARGEST_LAG_ERROR, LARGEST_LAG_ERROR);
+}
+
+// --- pressing and coming back ----------------------------------------------------------
+
+// From the first touch on, or anew after a loss.
+static void touch(touch_memory *m, bool felt)
+{
+    const touch_design *d = &m->design;
+    double arrival = d->landing_rate;
+    if (m->mode == TRAVEL) {
+        arrival = fmin(d->touch_rate, fmax(m->path_rate, d->landing_rate));
+        m->touched = (m->angle + m->last_link) / 2;
+        m->plan = 0;
+    }
+    m->first_plan = d->hub_stiffness * arrival / (m->p[GROWTH] * d->length);
+    if (felt) {
+        m->mode = PRESS;
+        m->unfelt = 0;
+    } else {
+        m->mode = BACK;
+        m->unfelt = m->p[LOST] + m->rig.period;
+    }
+}
+
+// How fast the plan changes [N/s], and what the place of touch moves by [rad/s].
+static double change_plan(touch_memory *m, bool lost, double *creep)
+{
+    const touch_design *d = &m->design;
+    const double period = m->rig.period;
+    *creep = 0;
+    if (!lost) {
+        const double grow = m->p[GROWTH] * (m->plan + m->first_plan);
+        const double end = (m->p[FORCE_WANTED] - m->plan) / m->p[RISE_TIME];
+        return d->slowness * bounded(end, -grow, grow);
+    }
+    const double since = m->unfelt / RETURN_TIME;
+    *creep = d->landing_rate * (1 + since * since);
+    m->touched += *creep * period;
+    m->integral -= m->p[DECAY] / 2 * m->integral * period;
+    m->slack = 0;
+    return -m->p[DECAY] * m->plan;
+}
+
+// In unbroken contact the rest takes on the hub's angle, and the integral the error.
+static void learn_in_contact(touch_memory *m, double reading)
+{
+    const touch_design *d = &m->design;
+    const double period = m->rig.period, force = fabs(m->p[FORCE_WANTED]);
+    const double left = m->p[DEAD_BAND] * force, error = m->plan - reading;
+    const double beyond = error - bounded(error, -left, left);
+    const double most = d->length * force;
+    m->slack += fmin(1, period / m->p[FORGET]) * (m->angle - m->rest);
+    m->integral =
+        bounded(m->integral + d->slowness * m->p[INTEGRAL] * d->length * beyond * period,
+                -most, most);
+}
+
+// The torque of the hub about its rest [N m].
+static double press_torque(touch_memory *m, double reading)
+{
+    const touch_design *d = &m->design;
+    const controller_setup *rig = &m->rig;
+    const double period = rig->period;
+    const bool lost = m->unfelt > m->p[LOST];
+    if (lost && m->mode == PRESS) {
+        m->touched -= m->p[DROP];
+    }
+    m->mode = lost ? BACK : PRESS;
+
+    // the rest, with the plan and the place of touch
+    double creep;
+    const double change = change_plan(m, lost, &creep), before = m->rest_rate;
+    m->plan += change * period;
+    m->rest_rate = change * d->length / d->hub_stiffness + creep;
+    m->rest = m->touched + m->plan * d->length / d->hub_stiffness + m->slack;
+    if (m->unbroken > m->p[UNBROKEN]) {
+        learn_in_contact(m, reading);
+    }
+
+    double damping = d->press_damping, stiffness = m->p[PRESS_STIFFNESS];
+    if (lost) {
+        damping = d->travel_damping;
+        stiffness = m->p[BACK_STIFFNESS];
+    }
+    const double most = 0.3 * fabs(m->p[FORCE_WANTED]) * d->length;
+    const double inertial =
+        m->p[RISE_INERTIA] * d->pressed * (m->rest_rate - before) / period;
+    return m->plan * d->length + rig->hub_damping * m->rest_rate +
+           m->p[PRESS_FRICTION] * rig->stiction *
+               bounded(m->rest_rate / FRICTION_RATE, -1, 1) +
+           bounded(inertial, -most, most) + damping * (m->rest_rate - m->rate) +
+           stiffness * (m->rest - m->angle) + m->integral;
+}
+
+// --- a sample --------------------------------------------------------------------------
+
+static void sample(void *memory, const controller_input *in, controller_output *out)
+{
+    touch_memory *m = memory;
+    const double period = m->rig.period;
+    const bool felt = in->force > m->p[FELT] * m->p[THRESHOLD];
+    if (!m->started) {
+        begin(m, in->encoder);
+        m->rate = in->tachometer;
+    } else {
+        follow_hub(m, in);
+    }
+    m->unfelt = felt ? 0 : m->unfelt + period;
+    m->unbroken = felt ? m->unbroken + period : 0;
+
+    // on the way a blow counts, too
+    const bool struck = m->mode == TRAVEL && is_struck(m);
+    if (m->mode != PRESS && (felt || struck)) {
+        touch(m, felt);
+    }
+
+    double torque;
+    if (m->mode == TRAVEL) {
+        torque = travel_torque(m);
+        out->desired_angle = m->hub_path[0];
+        out->desired_velocity = m->hub_path_rate[0];
+        out->calculated_force = 0;
+    } else {
+        torque = press_torque(m, in->force);
+        out->desired_angle = m->rest;
+        out->desired_velocity = m->rest_rate;
+        out->calculated_force = m->plan;
+    }
+    out->mode = m->mode;
+    out->command = bounded(torque / m->rig.torque_per_volt, -m->rig.voltage_limit,
+                           m->rig.voltage_limit);
+    remember(m->commands, out->command);
+}
+
+const controller touch_law =
+    CONTROLLER_LAW("touch", mode_names, table, touch_memory, .start = tune,
+                   .sample = sample, .tune = tune);
