@@ -52,6 +52,22 @@ static void find_rates(wall_path *p, double *scratch)
     }
 }
 
+// Whether the times of the rows rise; a sentence in f where they do not.
+static status check_times(const wall_path *p, const csv_table *table, const char *file,
+                          fault *f)
+{
+    for (size_t i = 1; i < p->rows; i++) {
+        if (!(p->times[i] > p->times[i - 1])) {
+            const int line = table->lines[i], column = csv_table_find(table, "time") + 1;
+            return fault_set_place(
+                f, STATUS_BAD_ARGUMENT, line, column,
+                "%.300s:%d:%d: time = %g s again: a wall is at one place at a time", file,
+                line, column, p->times[i]);
+        }
+    }
+    return STATUS_OK;
+}
+
 status wall_path_create(wall_path **created, const char *file, fault *f)
 {
     csv_table table = {0};
@@ -60,6 +76,8 @@ status wall_path_create(wall_path **created, const char *file, fault *f)
     if (p == NULL) {
         return fault_no_memory(f);
     }
+
+    // the columns, at times that rise
     status code = csv_table_read(&table, file, 2, f);
     if (code == STATUS_OK) {
         code = csv_table_times(&table, "time", &p->times, f);
@@ -68,23 +86,17 @@ status wall_path_create(wall_path **created, const char *file, fault *f)
         code = csv_table_numbers(&table, "place", "m", false, &p->places, f);
     }
     p->rows = table.rows;
-    for (size_t i = 1; i < p->rows && code == STATUS_OK; i++) {
-        if (!(p->times[i] > p->times[i - 1])) {
-            const int column = csv_table_find(&table, "time") + 1;
-            code = fault_set_place(
-                f, STATUS_BAD_ARGUMENT, table.lines[i], column,
-                "%.300s:%d:%d: time = %g s again: a wall is at one place at a time", file,
-                table.lines[i], column, p->times[i]);
-        }
+    if (code == STATUS_OK) {
+        code = check_times(p, &table, file, f);
     }
     csv_table_finish(&table);
+
+    // the spline through them
     double *scratch = NULL;
     if (code == STATUS_OK) {
         p->rates = calloc(p->rows, sizeof *p->rates);
         scratch = calloc(p->rows, sizeof *scratch);
-        if (p->rates != NULL && scratch != NULL) {
-            code = STATUS_OK;
-        } else {
+        if (p->rates == NULL || scratch == NULL) {
             code = fault_no_memory(f);
         }
     }

@@ -51,15 +51,18 @@ static void count_step(motion *m, double passed, double step)
         larger(-state_rest_gap(m->state).value, m->record.largest_penetration);
 }
 
-static void accept(motion *m, double step)
+// Makes the trial state, at the end of a step, that of the motion.
+static void accept_trial(motion *m, double step)
 {
     double *previous = m->state;
     m->state = m->trial;
     m->trial = previous;
     m->step.energy = m->step.trial_energy;
     count_step(m, m->state[SLOT_TIME] - previous[SLOT_TIME], step);
+
+    // just beyond a release a wall that gives would pull
     if (!motion_wall_is_rigid(m)) {
-        m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
+        m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0);
     }
 }
 
@@ -307,7 +310,7 @@ status motion_step(const arm *a, motion *m, double until, double step,
         return s;
     }
 
-    accept(m, step);
+    accept_trial(m, step);
     m->step.last = end.length;
     note_hold(a, m);
     const bool folded =

@@ -60,11 +60,17 @@ void zeno_monitor_cause(const arm *a, const motion *m, motion_event last, char *
                       "the hub comes to rest and breaks away by turns, and another "
                       "motor.stiction, or none, has longer strides");
     } else if (is_within(m) || (is_of_wall(last) && !motion_wall_is_rigid(m))) {
+        const char *damper = "", *mass = "";
+        if (a->wall.damping > 0) {
+            damper = "wall.damping or ";
+        }
+        if (m->wall_has_face) {
+            mass = ", or a larger wall.mass,";
+        }
         decimal_print(text, size,
                       "it is in contact with a wall that gives, and a smaller "
                       "%swall.stiffness%s has longer strides",
-                      a->wall.damping > 0 ? "wall.damping or " : "",
-                      m->wall_has_face ? ", or a larger wall.mass," : "");
+                      damper, mass);
     } else if (is_of_wall(last) && a->wall.restitution > 0) {
         decimal_print(text, size,
                       "it bounces off the wall, which a smaller wall.restitution or a "
@@ -109,8 +115,10 @@ status zeno_monitor_check(zeno_monitor *p, const arm *a, const motion *m, double
     const double now = m->state[SLOT_TIME], from = p->checked_at;
 
     // the first internal step only begins to count
-    const double slowest =
-        is_within(m) && a->wall.damping > 0 ? LEAST_DAMPED_STEP : LEAST_STEP;
+    double slowest = LEAST_STEP;
+    if (is_within(m) && a->wall.damping > 0) {
+        slowest = LEAST_DAMPED_STEP;
+    }
     const long steps = steps_between(a);
     const double least =
         (double)steps * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);

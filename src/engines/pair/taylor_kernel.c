@@ -40,7 +40,9 @@ KERNEL real allowed_step(real h, last_terms x, real limit)
 {
     double shrinking = 1, factor = SHORTENING;
     for (int e = TAYLOR_MOST - 1; e > 0; e >>= 1) {
-        shrinking = e & 1 ? shrinking * factor : shrinking;
+        if ((e & 1) != 0) {
+            shrinking *= factor;
+        }
         factor *= factor;
     }
 
@@ -82,7 +84,10 @@ KERNEL void cut_off(real *block, const mask *open, int order)
 KERNEL real gap_term(const factors *x, ptrdiff_t n, real l, const int point)
 {
     const real S2 = PART(DIRECTIONS(x, n), 3);
-    return point ? l * PART(DIRECTIONS(x, n), 1) - S2 : -(PART(DIRECTION1(x, n), 1) + S2);
+    if (point) {
+        return l * PART(DIRECTIONS(x, n), 1) - S2;
+    }
+    return -(PART(DIRECTION1(x, n), 1) + S2);
 }
 
 // What a step leaves of the function that the wall has watched, and where it ends in
@@ -277,13 +282,19 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     newest last = {zero, w1[0], w2[0], no_sums};
     for (ptrdiff_t n = 0; n < order; n++) {
         add_order(block, &e, &x, hub_rate, n, &last, contact, point, hub_spring);
-        power = n > 0 ? power * wanted : power;
+        if (n > 0) {
+            power *= wanted;
+        }
+
+        // every other order: whether some lane needs more
         if (n % 2 == 1 && n + 1 >= LEAST_ORDER && n + 1 < TAYLOR_MOST) {
             const mask large = needs_more_terms(block, &e, &x, n, power, limit, scale,
                                                 contact, point, hub_spring);
             const mask before = n + 1 > LEAST_ORDER ? open[(n - 1) / 2] : ~(mask){0};
             open[(n + 1) / 2] = before & large;
-            order = any(open[(n + 1) / 2]) ? order : n + 1;
+            if (!any(open[(n + 1) / 2])) {
+                order = n + 1;
+            }
         }
     }
 
@@ -310,10 +321,16 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     // what the step leaves of the wall's function and the hub's, and where it ends in
     // between
     const mask jumped = MASK(block[AT_EDGE_RATE] >= 0);
-    bound_wall(block, contact, block + (contact ? AT_FORCE : AT_GAP),
-               contact ? (int)order : (int)order + 2, jumped);
-    bound_hub(block, hub_spring ? block + AT_RATE_0 : w1, block + AT_HOLD, (int)order,
-              e.stuck, jumped);
+    if (contact) {
+        bound_wall(block, contact, block + AT_FORCE, (int)order, jumped);
+    } else {
+        bound_wall(block, contact, block + AT_GAP, (int)order + 2, jumped);
+    }
+    const real *hub_rates = w1;
+    if (hub_spring) {
+        hub_rates = block + AT_RATE_0;
+    }
+    bound_hub(block, hub_rates, block + AT_HOLD, (int)order, e.stuck, jumped);
     return (int)order;
 }
 

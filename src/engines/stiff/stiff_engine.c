@@ -133,6 +133,8 @@ static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end 
             break;
         }
         s->step.length = h;
+
+        // stages that are not found: without the course of the step before, then shorter
         if (!stiff_solve_stages(s, false, 0, ratio, &rate) || !take_stages(s, a, m)) {
             return false;
         }
@@ -326,21 +328,29 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
             fresh = true;
             continue;
         }
+
+        // not past a fold
         const double far = turn_to_fold(s, a);
         if (far > 1) {
             h *= larger(0.1, 0.9 / far);
             continue;
         }
+
+        // a decay that is over within the step is no error
         double error = stiff_error(s, false) / (s->tolerance * scale);
-        if (error > 1 &&
-            (begins || again)) { // a decay that is over within the step is no error
+        if (error > 1 && (begins || again)) {
             error = stiff_error(s, true) / (s->tolerance * scale);
         }
         const double grow = SAFETY * plain_pow(error + 1e-30, -1.0 / (RADAU_STAGES + 1));
+
+        // small enough: the next step is longer, but not just after one that was too long
         if (error <= 1) {
+            double most = MOST_GROWTH;
+            if (again) {
+                most = 1;
+            }
             s->kept[STIFF_RATE] = rate;
-            s->kept[STIFF_NEXT] =
-                smaller(h * smaller(again ? 1 : MOST_GROWTH, grow), LONGEST);
+            s->kept[STIFF_NEXT] = smaller(h * smaller(most, grow), LONGEST);
             if (begins) {
                 s->kept[STIFF_LEARNED] = s->kept[STIFF_NEXT];
             }

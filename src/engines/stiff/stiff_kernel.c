@@ -10,6 +10,7 @@
 // y of a right side without borders, in place.
 KERNEL void solve_unbordered(const stiff_step *s, complex_lanes *y)
 {
+    // from tip to hub: what each body's equation leaves for those before it
     complex_lanes fx = number(0), fy = fx, t = fx;
     for (int k = s->links - 1; k >= 0; k--) {
         const stiff_pivot *p = &s->pivot[k];
@@ -25,6 +26,7 @@ KERNEL void solve_unbordered(const stiff_step *s, complex_lanes *y)
         y[0] = times(minus(y[0], t), s->hub_inverse);
     }
 
+    // from hub to tip: what the bodies before take along
     complex_lanes ax = number(0), ay = ax, before = y[0];
     for (int k = 0; k < s->links; k++) {
         const stiff_pivot *p = &s->pivot[k];
@@ -288,6 +290,8 @@ static void solve_bordered(stiff_step *s, const complex_lanes *target)
     const int count = stiff_borders(s);
     complex_lanes *x = s->unknown;
     solve_unbordered(s, s->y);
+
+    // right sides of the borders' equations
     for (int i = 0; i < count; i++) {
         const complex_lanes sum = row_product(s, stiff_border_row(s, i), s->y);
         if (i < s->modes) {
@@ -298,6 +302,8 @@ static void solve_bordered(stiff_step *s, const complex_lanes *target)
             x[i] = minus(*target, sum);
         }
     }
+
+    // their unknowns, by the factors that factor_borders left
     for (int i = 1; i < count; i++) {
         for (int j = 0; j < i; j++) {
             x[i] = minus(x[i], times(s->corner[i][j], x[j]));
@@ -309,6 +315,8 @@ static void solve_bordered(stiff_step *s, const complex_lanes *target)
         }
         x[i] = times(x[i], s->corner[i][i]);
     }
+
+    // what they make of the bodies
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < s->dof; k++) {
             s->y[k] = plus(s->y[k], times(x[i], s->border[i][k]));

@@ -340,6 +340,8 @@ static void real_solve_bordered(const stiff_step *s, double target, double *y)
     real_solve_unbordered(s, y);
     const int count = stiff_borders(s);
     double z[STIFF_BORDERS];
+
+    // right sides of the borders' equations, and their unknowns
     for (int i = 0; i < count; i++) {
         const double sum = real_row_product(s, stiff_border_row(s, i), y);
         if (i < s->modes) {
@@ -359,6 +361,8 @@ static void real_solve_bordered(const stiff_step *s, double target, double *y)
         }
         z[i] *= s->corner[i][i].r[0];
     }
+
+    // what they make of the bodies
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < s->dof; k++) {
             y[k] += z[i] * s->border[i][k].r[0];
@@ -465,9 +469,18 @@ double stiff_error(stiff_integrator *integrator, bool twice)
     for (int k = 0; k < s->dof; k++) {
         x[k] *= ANGLE_RATE;
     }
-    const double of_w = stiff_momentum(integrator, w),
-                 of_q = stiff_momentum(integrator, x);
-    const double of_i = s->drive == STIFF_FLOWS ? current_error(s, gamma, twice) : 0;
-    const double of_p = s->contact == STIFF_GIVES ? impulse_error(s) : 0;
-    return sqrt(of_w * of_w + of_q * of_q + of_i * of_i + of_p * of_p);
+    const double of_velocities = stiff_momentum(integrator, w);
+    const double of_angles = stiff_momentum(integrator, x);
+    double square = of_velocities * of_velocities + of_angles * of_angles;
+
+    // with what current and wall have of their own
+    if (s->drive == STIFF_FLOWS) {
+        const double of_current = current_error(s, gamma, twice);
+        square += of_current * of_current;
+    }
+    if (s->contact == STIFF_GIVES) {
+        const double of_impulse = impulse_error(s);
+        square += of_impulse * of_impulse;
+    }
+    return sqrt(square);
 }
