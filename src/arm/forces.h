@@ -22,12 +22,6 @@ typedef double force_number __attribute__((vector_size(8 * FORCE_LANES)));
 typedef double force_number;
 #endif
 
-// The same number in all lanes, to the last bit.
-KERNEL force_number in_all_lanes(double x)
-{
-    return x - (force_number){0};
-}
-
 // --- links and their joints ------------------------------------------------------------
 
 // What the forces on a link and in the joint before it are made of.
