@@ -70,6 +70,23 @@ TEST(errors_are_drawn_around_the_scenario)
     }
 }
 
+// Rates and jitters are drawn apart, and go together in every case.
+TEST(a_jitter_stays_within_the_period)
+{
+    KEPT_SCENARIO(s) = shipped("compare/observer");
+    int both = 0;
+    for (uint64_t seed = 5000; seed < 9000; seed++) {
+        const drawn_case c = drawn_case_of(&s.parameters, seed);
+        scenario derived;
+        action room;
+        DONE(drawn_case_scenario(&derived, &s, &c, true, &room, &f));
+        const control_parameters *control = &derived.parameters.control;
+        assert_true(control->jitter * control->rate <= 1);
+        both += control->jitter * control->rate > 0.99;
+    }
+    assert_true(both > 0);
+}
+
 // A push comes among the actions of the scenario, in the order of time.
 TEST(pushes_keep_the_actions_of_the_scenario)
 {

@@ -13,6 +13,9 @@ typedef struct draft {
     drawn_case *made;
     const parameters *around;
     random_generator chance;
+    double rate;          // of samples [Hz], 0: the scenario's
+    double jitter;        // of their instants [s]
+    char *jitter_setting; // NULL: none
 } draft;
 
 // A number of [low, high), evenly spread.
@@ -33,14 +36,17 @@ static int one_of(draft *d, int count)
     return (int)random_below(&d->chance, (uint64_t)count);
 }
 
-static __attribute__((format(printf, 2, 3))) void add(draft *d, const char *format, ...)
+// Adds a setting, and returns where it stands.
+static __attribute__((format(printf, 2, 3))) char *add(draft *d, const char *format, ...)
 {
     drawn_case *c = d->made;
     assert(c->setting_count < DRAWN_CASE_SETTINGS);
+    char *setting = c->settings[c->setting_count++];
     va_list list;
     va_start(list, format);
-    vsnprintf(c->settings[c->setting_count++], DRAWN_SETTING_LENGTH, format, list);
+    vsnprintf(setting, DRAWN_SETTING_LENGTH, format, list);
     va_end(list);
+    return setting;
 }
 
 // --- walls -----------------------------------------------------------------------------
@@ -188,7 +194,8 @@ static void draw_push(draft *d)
 
 static void draw_rate(draft *d)
 {
-    add(d, "control.rate=%.6g", logarithmic(d, 100, 1000));
+    d->rate = logarithmic(d, 100, 1000);
+    add(d, "control.rate=%.6g", d->rate);
 }
 
 // Told up to two periods, untold to one.
@@ -203,13 +210,24 @@ static void draw_delay(draft *d)
 
 static void draw_scattered_samples(draft *d)
 {
-    add(d, "control.jitter=%.6g", even(d, 0, 1) * 1e-3); // a period of the fastest rate
+    d->jitter = even(d, 0, 1) * 1e-3;
+    d->jitter_setting = add(d, "control.jitter=%.6g", d->jitter);
     add(d, "sensor.accelerometer=%s", one_of(d, 2) == 1 ? "true" : "false");
 }
 
 static void draw_jitter(draft *d)
 {
-    add(d, "control.jitter=%.3g", even(d, 0, 2.5e-3));
+    d->jitter = even(d, 0, 2.5e-3);
+    d->jitter_setting = add(d, "control.jitter=%.3g", d->jitter);
+}
+
+// A jitter beyond the period of the drawn rate becomes that period.
+static void keep_jitter_within_period(draft *d)
+{
+    const double period = 0.999 / d->rate;
+    if (d->jitter_setting != NULL && d->rate > 0 && d->jitter > period) {
+        snprintf(d->jitter_setting, DRAWN_SETTING_LENGTH, "control.jitter=%.6g", period);
+    }
 }
 
 static void draw_tip_sensor(draft *d)
@@ -351,6 +369,8 @@ drawn_case drawn_case_of(const parameters *around, uint64_t seed)
         kinds[kind].draw(&d);
         c.errors[c.error_count++] = kind;
     }
+
+    keep_jitter_within_period(&d);
 
     // noise of its own
     add(&d, "control.seed=%llu", (unsigned long long)seed);
