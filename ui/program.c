@@ -142,13 +142,13 @@ static void end_cleanly(int number)
     raise(number);
 }
 
-// GLib found no memory for a picture, or Pango no font: our sentence, no half-written
+// GLib found no memory, or Pango no font: our sentence, no half-written
 // file, no signal.
-static void end_without_picture(const char *reason)
+static void end_without_memory(const char *reason)
 {
     whole_file_remove_unfinished();
     terminal_give_back();
-    complain("a picture cannot be drawn: %s", reason);
+    complain("the program has to end: %s", reason);
     _exit(EXIT_FAILED);
 }
 
@@ -214,6 +214,6 @@ int program_run(int argc, char **argv)
 
     // however it ends, no half-written file is left
     catch_endings();
-    text_when_giving_up(end_without_picture);
+    text_when_giving_up(end_without_memory);
     return close_output(dispatch(argc, argv));
 }
