@@ -64,10 +64,7 @@ typedef struct peer {
 
 // Each simulator offers its peers; returns how many.
 int peers_impactlab(const peer **list);
-int peers_taylor(const peer **list);
 int peers_mujoco(const peer **list);
-int peers_sundials(const peer **list);
-int peers_dart(const peer **list);
 int peers_siconos(const peer **list);
 
 // Fills everything with NaN.

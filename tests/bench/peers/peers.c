@@ -356,15 +356,8 @@ int main(int argc, char **argv)
     static contestant all[MOST_PEERS];
     int count = enlist(all, 0, peers_impactlab, o.rounds);
     bool good = count > 0;
-    count = enlist(all, count, peers_taylor, o.rounds);
 #ifdef PEERS_MUJOCO
     count = enlist(all, count, peers_mujoco, o.rounds);
-#endif
-#ifdef PEERS_SUNDIALS
-    count = enlist(all, count, peers_sundials, o.rounds);
-#endif
-#ifdef PEERS_DART
-    count = enlist(all, count, peers_dart, o.rounds);
 #endif
 #ifdef PEERS_SICONOS
     count = enlist(all, count, peers_siconos, o.rounds);

@@ -95,7 +95,7 @@ take_peer() {
 }
 
 inputs=()
-for source in peer impactlab_peer taylor_peer; do
+for source in peer impactlab_peer; do
     compile_c "$source" || give_up "$source.c could not be compiled"
     inputs+=("$objects/$source.o")
 done
@@ -104,17 +104,6 @@ if ! has_header "$cc" mujoco/mujoco.h c; then
     say "no MuJoCo here (package libmujoco-dev), left out"
 elif take_peer mujoco compile_c mujoco_peer; then
     libraries+=(-lmujoco)
-fi
-if ! has_header "$cc" cvode/cvode.h c; then
-    say "no SUNDIALS here (package libsundials-dev), left out"
-elif take_peer sundials compile_c sundials_peer; then
-    libraries+=(-lsundials_cvode -lsundials_arkode -lsundials_nvecserial)
-fi
-if ! has_header "$cxx -isystem /usr/include/eigen3" dart/config.hpp c++; then
-    say "no DART here (package libdart-dev), left out"
-elif take_peer dart compile_cxx dart -isystem /usr/include/eigen3; then
-    libraries+=(-ldart)
-    linker=$cxx
 fi
 if ! has_header "$cxx" siconos/SiconosConfig.h c++; then
     say "no Siconos here (package libsiconos-kernel-dev), left out"
