@@ -37,6 +37,8 @@ static long refused_at;       // 0: none
 
 static bool tells_place; // of the request that is refused: the calls that led to it
 
+// Counts a request for memory of the process under test. True if it is the one to refuse;
+// where that was asked for, the calls that led to it are printed then.
 static bool refused(void)
 {
     if (!tested || atomic_fetch_add(requests, 1) + 1 != refused_at) {
@@ -170,8 +172,9 @@ static const struct {
 };
 enum { HELPED = (int)(sizeof helped / sizeof helped[0]) };
 
-// The n-th call of a command without results: as helped, else as short as its table
-// allows. False behind the last.
+// The n-th call of a command, from 0 on, that asks for no results: those of the table
+// above or, if it has none, one that is as short as the command allows. False if there
+// are not so many.
 static bool plain_call(const command *c, int n, call *made, call_kind *kind)
 {
     int known = 0;
@@ -208,7 +211,9 @@ static bool is_result(const call *plain, call_kind kind, const option_row *o)
     return !taken;
 }
 
-// Plainly; each result on the standard output; all of them in files; each picture.
+// All calls to be tried that follow from a plain one, and how many they are: the plain
+// call itself, one for each result on the standard output, one for each picture, and one
+// with all results in files.
 static int calls_of(const command *c, const call *plain, call_kind kind, call *calls)
 {
     call files = *plain;
@@ -239,13 +244,15 @@ static int calls_of(const command *c, const call *plain, call_kind kind, call *c
 static int failures;
 static long refusals;
 
-static void fail(const call *c, long k, const char *what, const char *more)
+// Prints that a call did not behave when one request was refused: what is wrong, and the
+// beginning of the text that shows it.
+static void fail(const call *c, long request, const char *what, const char *evidence)
 {
-    printf("FAILED: request %ld of:", k);
+    printf("FAILED: request %ld of:", request);
     for (int i = 0; i < c->count; i++) {
         printf(" %s", c->words[i]);
     }
-    printf(": %s%.300s\n", what, more);
+    printf(": %s%.300s\n", what, evidence);
     failures++;
 }
 
@@ -259,16 +266,25 @@ static char *content_of(const char *path, size_t *length)
         exit(EXIT_FAILURE);
     }
     char *text = calloc(1, (size_t)about.st_size + 1);
-    *length = 0;
-    for (ssize_t got = 1; text != NULL && got > 0; *length += got > 0 ? (size_t)got : 0) {
-        got = read(file, text + *length, (size_t)about.st_size - *length);
+    if (text == NULL) {
+        perror(path);
+        exit(EXIT_FAILURE);
     }
+
+    // read() may return less than what it is asked for
+    *length = 0;
+    ssize_t got = 0;
+    do {
+        *length += (size_t)got;
+        got = read(file, text + *length, (size_t)about.st_size - *length);
+    } while (got > 0);
     close(file);
     return text;
 }
 
-// Leaves out lines with times of the machine and, if `timed`, makes every number the same
-// one.
+// Writes what two runs of one call have in common: the text without the lines that say
+// how long the machine took and, if `timed`, without all digits, signs and blanks. Bytes
+// that are no text stay as they are.
 static void write_essence(FILE *out, char *text, size_t length, bool timed)
 {
     if (memchr(text, '\0', length) != NULL) {
@@ -290,16 +306,18 @@ static void write_essence(FILE *out, char *text, size_t length, bool timed)
     }
 }
 
-static int visible(const struct dirent *entry)
+// Whether an entry of a folder is neither the folder itself nor the one above it.
+static int is_entry_below(const struct dirent *entry)
 {
     return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
 }
 
-// Names and contents of all files in and below a folder, which are removed.
+// Writes the names and contents of all files in and below a folder, and removes the
+// files.
 static void take_files(FILE *out, const char *folder, bool timed)
 {
     struct dirent **entries;
-    const int count = scandir(folder, &entries, visible, alphasort);
+    const int count = scandir(folder, &entries, is_entry_below, alphasort);
     for (int i = 0; i < count; i++) {
         char path[1024];
         struct stat about;
@@ -309,7 +327,7 @@ static void take_files(FILE *out, const char *folder, bool timed)
             take_files(out, path, timed);
             rmdir(path);
         } else {
-            // a database's bytes are not the same twice
+            // a database has other bytes each time: its name is enough
             size_t length;
             char *text = content_of(path, &length);
             if (strstr(path, ".sqlite") == NULL) {
@@ -325,19 +343,24 @@ static void take_files(FILE *out, const char *folder, bool timed)
     }
 }
 
-// Carries out a call with a request refused, in a process of its own. Returns how it
-// ended.
-static int carry_out(const call *c, long k)
+// Carries out a call in a process of its own in which request number `refused_request`
+// for memory is refused (none if 0). Its output goes to the files "out" and "err".
+// Returns its status as waitpid() has it, -1 without a process.
+static int carry_out(const call *c, long refused_request)
 {
+    // the words as main() gets them
     char *words[MOST_WORDS + 1];
     for (int i = 0; i < c->count; i++) {
         words[i] = (char *)c->words[i];
     }
     words[c->count] = NULL;
+
+    // what is buffered would be written by the child once more
     mkdir("results", 0777);
     fflush(NULL);
     const pid_t child = fork();
     if (child == 0) {
+        // standard streams are files
         const int out = open("out", O_WRONLY | O_CREAT | O_TRUNC, 0666);
         const int err = open("err", O_WRONLY | O_CREAT | O_TRUNC, 0666);
         const int in = open("/dev/null", O_RDONLY);
@@ -347,15 +370,22 @@ static int carry_out(const call *c, long k)
         close(in);
         close(out);
         close(err);
-        refused_at = k;
+
+        // from here on requests are counted
+        refused_at = refused_request;
         atomic_store(requests, 0);
         tested = true;
         exit(program_run(c->count, words));
     }
-    int ended = 0;
-    while (child > 0 && waitpid(child, &ended, 0) < 0 && errno == EINTR) {
+    if (child < 0) {
+        return -1;
     }
-    return child > 0 ? ended : -1;
+
+    // a signal may interrupt the waiting
+    int ended = 0;
+    while (waitpid(child, &ended, 0) < 0 && errno == EINTR) {
+    }
+    return ended;
 }
 
 // What a call printed and wrote, as a text on the heap.
@@ -372,30 +402,36 @@ static char *essence(bool timed, size_t *length)
     return text;
 }
 
-// One refusal: with status 0 all is as expected, else there is a sentence that is true.
+// Carries out a call with one request refused. If it then ends with status 0, what it
+// printed and wrote is as expected; else it says a sentence, which does not blame the
+// call.
 static void attempt(const call *c, bool timed, long k, const char *expected,
                     size_t expected_length)
 {
-    size_t length, said;
+    size_t length, err_length;
     const int ended = carry_out(c, k);
-    char *got = essence(timed, &length), *err = content_of("err", &said);
+    char *got = essence(timed, &length), *err = content_of("err", &err_length);
     refusals++;
+
     if (!WIFEXITED(ended) || WEXITSTATUS(ended) > EXIT_BAD_ARGUMENTS) {
         fail(c, k, "it crashed: ", err);
     } else if (WEXITSTATUS(ended) != EXIT_DONE) {
-        if (said == 0) {
+        if (err_length == 0) {
             fail(c, k, "it failed without a sentence", "");
         }
         if (strstr(err, "did you mean") != NULL || strstr(err, "neither") != NULL) {
             fail(c, k, "it blames the call: ", err);
         }
     } else if (length != expected_length || memcmp(got, expected, length) != 0) {
+        // from a few characters before the first difference on
         size_t same = 0;
         while (same < length && same < expected_length && got[same] == expected[same]) {
             same++;
         }
         fail(c, k, "another result, and status 0: ", got + (same > 40 ? same - 40 : 0));
     }
+
+    // a file that is being written has the ending .part
     if (strstr(got, ".part") != NULL) {
         fail(c, k, "a temporary stays", "");
     }
@@ -406,15 +442,17 @@ static void attempt(const call *c, bool timed, long k, const char *expected,
     free(err);
 }
 
+// Carries out a call undisturbed and then with about `most` of its requests refused, one
+// each time; only with request number `only` if that is not 0.
 static void attempt_all(const call *c, bool timed, long most, long only)
 {
     // undisturbed it does what it is asked for, and twice the same
-    size_t lengths[2], said;
+    size_t lengths[2], err_length;
     char *expected[2];
     for (int i = 0; i < 2; i++) {
         const int ended = carry_out(c, 0);
         expected[i] = essence(timed, &lengths[i]);
-        char *err = content_of("err", &said);
+        char *err = content_of("err", &err_length);
         if (!WIFEXITED(ended) || WEXITSTATUS(ended) != EXIT_DONE) {
             fail(c, 0, "undisturbed it does not succeed: ", err);
         }
@@ -424,7 +462,7 @@ static void attempt_all(const call *c, bool timed, long most, long only)
         fail(c, 0, "it is not the same twice", "");
     }
 
-    // of few requests each is refused, of many some
+    // of few requests each is refused, of many every step-th one
     const long all = atomic_load(requests), step = (all + most - 1) / most;
     for (int i = 1; i < c->count; i++) {
         printf("%s ", c->words[i]);

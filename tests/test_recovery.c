@@ -1,5 +1,6 @@
-// What is done in a lab outlives every end but the one that is asked for, and is offered
-// once more.
+// Recovery: what a user has done in a lab is kept in a file of its own, which outlives
+// every end of the lab but the one that the user asks for. The next lab offers to go on
+// with it.
 #include "tests/explorer_on_screen.h"
 
 #include <dirent.h>
@@ -8,38 +9,54 @@
 
 #include "src/session/session_file.h"
 
-// Sets where the files go, and opens a lab that keeps its own there.
-static void open_watched(explorer *ex, bool offers)
+// Opens a lab whose recovery file is below the test's folder.
+static void open_watched(explorer *ex)
 {
     assert_int_equal(setenv("XDG_STATE_HOME", test_folder, 1), 0);
     open_changed(ex, "corrected/first-impact", "", HUGE_VAL);
-    assert_int_equal(recovery_begin(ex), offers);
 }
 
-// Lets it write what has changed, at an instant of which the caller says when it is [s].
-static void keep(explorer *ex, double now)
+static void open_that_offers_nothing(explorer *ex)
 {
-    recovery_keep(ex, true, now);
+    open_watched(ex);
+    assert_false(recovery_begin(ex));
+}
+
+// Opens a lab that has found the recovery file of another one and offers to go on with
+// it.
+static void open_that_offers(explorer *ex)
+{
+    open_watched(ex);
+    assert_true(recovery_begin(ex));
+}
+
+// Lets the lab write its recovery file as at the instant `now` [s], and waits for it.
+static void keep_at(explorer *ex, double now)
+{
+    const bool changed = true, unchanged = false;
+    recovery_keep(ex, changed, now);
     while (ex->recovery.writes) {
         usleep(1000);
-        recovery_keep(ex, false, now);
+        recovery_keep(ex, unchanged, now);
     }
 }
 
-// How many files begin with a word where they are.
+// How many entries of the folder of recovery files begin with this word.
 static int files_called(const char *prefix)
 {
     int count = 0;
     DIR *folder = opendir(formatted("%s/impactlab", test_folder));
     assert_non_null(folder);
     for (const struct dirent *e; (e = readdir(folder)) != NULL;) {
-        count += strncmp(e->d_name, prefix, strlen(prefix)) == 0;
+        if (strncmp(e->d_name, prefix, strlen(prefix)) == 0) {
+            count++;
+        }
     }
     closedir(folder);
     return count;
 }
 
-// How many changes a recovery file has; it is whole.
+// How many changes a recovery file holds. It can be read, so it is whole.
 static int changes_in(const char *path)
 {
     SCOPED(session_file_finish) session_file file;
@@ -49,159 +66,204 @@ static int changes_in(const char *path)
 
 TEST_IN_FOLDER(what_was_done_is_offered_and_comes_back)
 {
-    SCOPED(explorer_finish) explorer ex, next;
-    open_watched(&ex, false);
-    keep(&ex, 0);
-    assert_int_equal(files_called("rec"), 0); // nothing would be lost
-    press(&ex, "b:set arm.k2 5<Enter>:note hard<Enter>:seek 0.4<Enter>:set motor.voltage "
-               "2<Enter>");
-    keep(&ex, 1);
-    press(&ex, ":session save as-told.session<Enter>");
-    KEPT_TEXT(told) = file_text("as-told.session");
-    assert_holds(ex.recovery.path, told);
+    const bool changed = true, unchanged = false, asked_for = true, unasked = false;
+    SCOPED(explorer_finish) explorer lab, next;
 
-    // not more than once a second, but then without another key
-    press(&ex, ":set motor.voltage 3<Enter>");
-    check_close(recovery_keep(&ex, true, 1.25), 0.75, 1e-15);
-    assert_holds(ex.recovery.path, told);
-    while (recovery_keep(&ex, false, 2) < HUGE_VAL) {
+    // a lab in which nothing was done has nothing to lose and writes no file
+    open_that_offers_nothing(&lab);
+    keep_at(&lab, 0);
+    assert_int_equal(files_called("rec"), 0);
+
+    // after two changes, a pinned run and a note the file is what a saved session would
+    // be
+    press(&lab, "b:set arm.k2 5<Enter>:note hard<Enter>:seek 0.4<Enter>:set "
+                "motor.voltage 2<Enter>");
+    keep_at(&lab, 1);
+    press(&lab, ":session save by-hand.session<Enter>");
+    KEPT_TEXT(by_hand) = file_text("by-hand.session");
+    assert_holds(lab.recovery.path, by_hand);
+
+    // a third change 0.25 s after the file was written waits for the second to be over;
+    // it is written then without another key
+    press(&lab, ":set motor.voltage 3<Enter>");
+    check_close(recovery_keep(&lab, changed, 1.25), 0.75, 1e-15);
+    assert_holds(lab.recovery.path, by_hand);
+    while (recovery_keep(&lab, unchanged, 2) < HUGE_VAL) {
         usleep(1000);
     }
-    assert_int_equal(changes_in(ex.recovery.path), 3);
+    assert_int_equal(changes_in(lab.recovery.path), 3);
 
-    // it ends, what was changed last is in it, and the next one takes it over as its own
-    press(&ex, ":set arm.k2 6<Enter>");
-    recovery_keep(&ex, true, 2.1);
-    recovery_end(&ex, false);
-    open_watched(&next, true);
+    // the lab ends unasked, just after a fourth change
+    press(&lab, ":set arm.k2 6<Enter>");
+    recovery_keep(&lab, changed, 2.1);
+    recovery_end(&lab, unasked);
+
+    // the next lab offers all of it, the fourth change too, and goes on in the same file
+    open_that_offers(&next);
     assert_shows_at(&next, 80, 24, "y goes on");
     press(&next, "y");
     fail_if(next.input.message.warning, "%s", next.input.message.text);
-    assert_same_trace(&next.model.session.run.trace, &ex.model.session.run.trace);
+    assert_same_trace(&next.model.session.run.trace, &lab.model.session.run.trace);
     assert_int_equal(next.model.pinned.count, 1);
     assert_int_equal(next.model.note_count, 1);
-    assert_string_equal(next.recovery.path, ex.recovery.path);
-    press_quits(&next, "q", false); // it is not saved
+    assert_string_equal(next.recovery.path, lab.recovery.path);
+
+    // what came back is not saved: q does not quit, and a name is asked for
+    press_quits(&next, "q", false);
     press_prompts(&next, ":session save<Enter>", "session save lab.session");
-    recovery_end(&next, true);
-    assert_int_equal(files_called(""), 2); // . and ..
+
+    // the user ends the lab, and the file is removed: the folder has only . and .. left
+    recovery_end(&next, asked_for);
+    assert_int_equal(files_called(""), 2);
 }
 
 TEST_IN_FOLDER(no_lab_takes_the_file_of_another)
 {
+    const bool asked_for = true, unasked = false;
     SCOPED(explorer_finish) explorer first, second, third;
-    open_watched(&first, false);
-    press(&first, ":set arm.k2 5<Enter>");
-    keep(&first, 0);
-    open_watched(&second, false);
-    press(&first, ":set arm.k2 6<Enter>");
-    keep(&first, 1);
-    open_watched(&third, false);
-    recovery_end(&first, false);
 
-    // of two that start one offers it; declined by another key it is offered again, by n
-    // it is kept
-    recovery_end(&second, true);
+    // the file of a lab that runs is offered to no other lab
+    open_that_offers_nothing(&first);
+    press(&first, ":set arm.k2 5<Enter>");
+    keep_at(&first, 0);
+    open_that_offers_nothing(&second);
+    press(&first, ":set arm.k2 6<Enter>");
+    keep_at(&first, 1);
+    open_that_offers_nothing(&third);
+
+    // once the first lab has ended unasked, only one of two labs offers its file
+    recovery_end(&first, unasked);
+    recovery_end(&second, asked_for);
     explorer_finish(&second);
-    open_watched(&second, true);
+    open_that_offers(&second);
     assert_false(recovery_begin(&third));
+
+    // a key that is no answer ends the offer, and another lab may make it
     press(&second, "<Left>");
     assert_true(recovery_begin(&third));
+
+    // n declines it: the file stays under another name and is not offered again
     press_shows(&third, "n", "goes on with it");
     assert_int_equal(files_called("rec"), 0);
     assert_int_equal(files_called("declined-"), 1);
     assert_false(recovery_begin(&second));
 }
 
-// One sentence says that nothing can be kept; the lab works on, and a file that is there
-// stays.
+// When the recovery file cannot be written the lab says so in one sentence and works on.
+// A file that was written before stays.
 TEST_IN_FOLDER(a_file_that_cannot_be_written_is_told_once)
 {
     SCOPED(explorer_finish) explorer ex, nowhere;
-    open_watched(&ex, false);
+    open_that_offers_nothing(&ex);
     press(&ex, ":set arm.k2 5<Enter>");
-    keep(&ex, 0);
+    keep_at(&ex, 0);
+
+    // no file may be larger than 100 bytes, as on a full disk: that is said
     signal(SIGXFSZ, SIG_IGN);
     const struct rlimit full = {100, RLIM_INFINITY},
                         room = {RLIM_INFINITY, RLIM_INFINITY};
     setrlimit(RLIMIT_FSIZE, &full);
     press(&ex, ":set arm.k2 6<Enter>");
-    keep(&ex, 1);
+    keep_at(&ex, 1);
     assert_shows(&ex, "would not outlive a crash", "File too large");
+
+    // the same failure after the next change is not said again
     press(&ex, ":set arm.k2 7<Enter>");
-    keep(&ex, 2);
+    keep_at(&ex, 2);
     assert_shows(&ex, "!would not outlive");
+
+    // the file still holds the first change, and all of them when there is room again
     setrlimit(RLIMIT_FSIZE, &room);
     assert_int_equal(changes_in(ex.recovery.path), 1);
-    keep(&ex, 3);
+    keep_at(&ex, 3);
     assert_int_equal(changes_in(ex.recovery.path), 3);
 
+    // a folder that cannot be made is said with the file's name
     setenv("XDG_STATE_HOME", "/proc/none", 1);
     open_changed(&nowhere, "corrected/first-impact", "", HUGE_VAL);
     assert_false(recovery_begin(&nowhere));
     press(&nowhere, ":set arm.k2 5<Enter>");
-    keep(&nowhere, 0);
+    keep_at(&nowhere, 0);
     assert_shows(&nowhere, "would not outlive a crash", "/proc/none/impactlab/recovery-");
 }
 
-// A lab that makes one change after another, and tells each that was written.
-static void change_and_tell(int pipe)
+// A lab that makes one change after another without end, and sends a byte through the
+// pipe after each change that its recovery file holds.
+static void make_changes(int pipe)
 {
     SCOPED(explorer_finish) explorer ex;
-    open_watched(&ex, false);
+    open_that_offers_nothing(&ex);
     for (int i = 0;; i++) {
         press_text(&ex, ":set arm.k2 %d<Enter>", 4 + i % 5);
-        keep(&ex, i);
+        keep_at(&ex, i);
         assert_int_equal(write(pipe, "", 1), 1);
     }
 }
 
-// Killed at whatever instant of the writing it has all that was written before, and is
-// whole.
-TEST_IN_FOLDER(whatever_ends_it_the_file_is_whole)
+// The lab above in a process of its own, with the default action of each of these
+// signals. Returns the end of the pipe to read from.
+static int start_lab(pid_t *lab, const int *signals, int count)
 {
-    static const int signals[] = {SIGKILL, SIGHUP, SIGABRT, SIGSEGV, SIGTERM};
-    random_generator random = seeded(1);
-    for (int n = 0; n < 25; n++) {
-        int ends[2];
-        char told;
-        assert_int_equal(pipe(ends), 0);
-        const pid_t lab = fork();
-        if (lab == 0) {
-            setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-            for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
-                signal(signals[i], SIG_DFL);
-            }
-            close(ends[0]);
-            change_and_tell(ends[1]);
-        }
-        close(ends[1]);
-        const int wanted = 1 + n % 4;
-        for (int i = 0; i < wanted; i++) {
-            assert_int_equal(read(ends[0], &told, 1), 1);
-        }
-        usleep((useconds_t)evenly(&random, 0, 8000));
-        kill(lab, signals[n % 5]);
-        assert_int_equal(waitpid(lab, NULL, 0), lab);
-        int written = wanted;
-        while (read(ends[0], &told, 1) == 1) {
-            written++;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    *lab = fork();
+    if (*lab == 0) {
+        // a crash is meant here: it leaves no core file
+        setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+        for (int i = 0; i < count; i++) {
+            signal(signals[i], SIG_DFL);
         }
         close(ends[0]);
+        make_changes(ends[1]);
+    }
+    close(ends[1]);
+    return ends[0];
+}
 
-        // offered to the next one, and with it removed
+// A lab that is killed at any instant of its writing leaves a whole file with every
+// change that it reported. The file may hold one more, which it had no time to report.
+TEST_IN_FOLDER(whatever_ends_it_the_file_is_whole)
+{
+    enum { KILLED_LABS = 25, SIGNALS = 5 };
+    static const int signals[SIGNALS] = {SIGKILL, SIGHUP, SIGABRT, SIGSEGV, SIGTERM};
+    random_generator random = seeded(1);
+    for (int n = 0; n < KILLED_LABS; n++) {
+        pid_t lab;
+        const int reports = start_lab(&lab, signals, SIGNALS);
+
+        // after one to four reports and up to 8 ms the lab is killed
+        char byte;
+        int reported = 0;
+        while (reported < 1 + n % 4) {
+            assert_int_equal(read(reports, &byte, 1), 1);
+            reported++;
+        }
+        usleep((useconds_t)evenly(&random, 0, 8000));
+        kill(lab, signals[n % SIGNALS]);
+        assert_int_equal(waitpid(lab, NULL, 0), lab);
+
+        // reports it made meanwhile
+        while (read(reports, &byte, 1) == 1) {
+            reported++;
+        }
+        close(reports);
+
+        // the next lab is offered the file
         SCOPED(explorer_finish) explorer next;
-        open_watched(&next, true);
+        open_that_offers(&next);
         const int changes = changes_in(next.recovery.left);
-        fail_if(changes != written && changes != written + 1, "%d of %d changes", changes,
-                written);
+        fail_if(changes != reported && changes != reported + 1, "%d of %d changes",
+                changes, reported);
         press(&next, "y");
         assert_int_equal(next.model.session.input_count, changes);
-        recovery_end(&next, true);
+
+        // and removes it when its user ends it
+        const bool asked_for = true;
+        recovery_end(&next, asked_for);
         assert_int_equal(files_called("rec"), 0);
     }
 
-    // one that was killed while it wrote leaves what it had written until then
+    // a lab that was killed while it wrote leaves a temporary file
     assert_int_equal(system(
                          formatted("rm -f %s/impactlab/.impactlab-*.part", test_folder)),
                      0);

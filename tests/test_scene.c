@@ -13,51 +13,93 @@ static double distance(vector a, vector b)
     return sqrt(vector_dot(d, d));
 }
 
-// The curve starts and ends where the arm does, along its outer links, and touches every
-// inner link at its middle.
+enum { MOST_CURVE_LINKS = 40, MOST_CURVE_POINTS = 256 };
+
+// The joints of a bent arm whose links are 1 m long.
+static void bend_arm(int links, vector *joints)
+{
+    joints[0] = (vector){0};
+    for (int k = 0; k < links; k++) {
+        double angle = 0.3 + 0.5 * sin(k);
+        joints[k + 1] = vector_add(joints[k], (vector){cos(angle), sin(angle), 0});
+    }
+}
+
+// The cosine of the angle between a piece of the curve and a link of 1 m.
+static double cosine_to_link(vector piece, vector link)
+{
+    return vector_dot(vector_unit(piece), link);
+}
+
+// The first and the last piece of the curve lie along the outer links. A piece is a chord
+// of a parabola: the first of n chords leans against the link by about sin(b) / (2 n), b
+// being the angle of the bend, which is below 0.5 rad here. A lean of 1.5 / n is allowed,
+// with n the points per link. The cosine of a lean differs from 1 by less than its
+// square.
+static void check_curve_ends(const vector *joints, int links, const vector *curve,
+                             int count)
+{
+    double points_per_link = count / (double)links;
+    double lean = links == 1 ? 1e-7 : 1.5 / points_per_link;
+
+    vector first_piece = vector_sum(curve[1], -1, curve[0]);
+    vector first_link = vector_sum(joints[1], -1, joints[0]);
+    check_close(cosine_to_link(first_piece, first_link), 1, lean * lean);
+
+    vector last_piece = vector_sum(curve[count - 1], -1, curve[count - 2]);
+    vector last_link = vector_sum(joints[links], -1, joints[links - 1]);
+    check_close(cosine_to_link(last_piece, last_link), 1, lean * lean);
+}
+
+static double distance_to_curve(vector point, const vector *curve, int count)
+{
+    double nearest = HUGE_VAL;
+    for (int i = 0; i < count; i++) {
+        nearest = fmin(nearest, distance(curve[i], point));
+    }
+    return nearest;
+}
+
+// The curve starts and ends where the arm does, along its outer links, and has a point in
+// the middle of every inner link.
 TEST(test_curve)
 {
-    for (int links = 1; links <= 40; links += links < 3 ? 1 : 37) {
-        vector joints[64] = {0}, curve[256];
-        assert_in_range(scene_curve_length(links), 2, 256);
-        for (int k = 0; k < links; k++) {
-            double angle = 0.3 + 0.5 * sin(k);
-            joints[k + 1] = vector_add(joints[k], (vector){cos(angle), sin(angle), 0});
-        }
-        int count = scene_curve(joints, links, curve);
-        assert_int_equal(count, scene_curve_length(links));
+    for (EACH_OF(int, links, 1, 2, 3, 40)) {
+        vector joints[MOST_CURVE_LINKS + 1], curve[MOST_CURVE_POINTS];
+        assert_in_range(scene_curve_length(*links), 2, MOST_CURVE_POINTS);
+        bend_arm(*links, joints);
+        int count = scene_curve(joints, *links, curve);
+        assert_int_equal(count, scene_curve_length(*links));
+
+        // the ends
         check_close(distance(curve[0], joints[0]), 0, 1e-15);
-        check_close(distance(curve[count - 1], joints[links]), 0, 1e-15);
-        vector start = vector_unit(vector_sum(curve[1], -1, curve[0]));
-        vector end = vector_unit(vector_sum(curve[count - 1], -1, curve[count - 2]));
-        // the first piece of a parabola leans by about half its own turn
-        double slack = links == 1 ? 1e-7 : 1.5 / (count / (double)links);
-        check_close(vector_dot(start, vector_sum(joints[1], -1, joints[0])), 1,
-                    slack * slack);
-        check_close(vector_dot(end, vector_sum(joints[links], -1, joints[links - 1])), 1,
-                    slack * slack);
-        for (int k = 1; k + 1 < links; k++) {
+        check_close(distance(curve[count - 1], joints[*links]), 0, 1e-15);
+        check_curve_ends(joints, *links, curve, count);
+
+        // the inner links
+        for (int k = 1; k + 1 < *links; k++) {
             vector middle = vector_scaled(vector_add(joints[k], joints[k + 1]), 0.5);
-            double nearest = 1;
-            for (int i = 0; i < count; i++) {
-                nearest = fmin(nearest, distance(curve[i], middle));
-            }
-            check_close(nearest, 0, 1e-12);
+            check_close(distance_to_curve(middle, curve, count), 0, 1e-12);
         }
     }
 }
 
-// At a row the joints are the row's; between rows the tip is between.
+// At the instant of a row the joints have the angles of that row; halfway between two
+// rows the last angle is the mean of theirs.
 TEST(test_joints)
 {
     SCOPED(forget) recorded r = record("corrected/five-links");
     const trace *t = &r.result.trace;
     const parameters *p = &r.scenario.parameters;
     vector joints[6];
+
+    // a row in the middle of the run, the last one of its instant
     size_t row = t->row_count / 2;
     while (t->rows[row].time == t->rows[row + 1].time) {
         row++;
     }
+
+    // the joints at that row
     scene_joints(t, p, t->rows[row].time, joints);
     const double *angles =
         t->angles + (row + 1) * (size_t)t->angle_count - 5; // behind the hub's
@@ -66,15 +108,20 @@ TEST(test_joints)
                     angles[k], 1e-12);
         check_close(distance(joints[k + 1], joints[k]), p->arm.length / 5, 1e-12);
     }
+
+    // halfway to the next row
     sample half =
         scene_joints(t, p, (t->rows[row].time + t->rows[row + 1].time) / 2, joints);
     check_close(half.last_angle,
                 (t->rows[row].last_angle + t->rows[row + 1].last_angle) / 2, 1e-9);
-    // beyond the ends the arm stays where it is
+
+    // after the end of the run the arm stays where it is
     check_close(scene_joints(t, p, 1e9, joints).last_angle, LAST_ROW(t)->last_angle,
                 1e-15);
 }
 
+// The instants of a series of pictures begin with the run, increase, and end with the
+// peak of the first pulse.
 TEST(test_instants)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
@@ -88,7 +135,8 @@ TEST(test_instants)
     check_close(times[5], m->first_contact_s + m->first_pulse_time_to_peak_s, 1e-12);
 }
 
-// Whatever is to be seen lies within the window, and fills it in one direction.
+// Each point to be seen lies within the window of the picture, and together they fill
+// nearly all of its width (0.8) or of its height (0.75).
 TEST(test_camera)
 {
     const vector points[] = {{0, 0, 0.1},
@@ -104,6 +152,8 @@ TEST(test_camera)
         camera c = camera_fit(kinds[k], 0.1, points, 4, 640, 360, window);
         double left = 1, right = 0, top = 1, bottom = 0;
         for (size_t i = 0; i < 4; i++) {
+            // its place in the picture, and its depth between the nearest and the
+            // farthest
             vector at = camera_project(&c, points[i]);
             left = fmin(left, at.x / 640);
             right = fmax(right, at.x / 640);
@@ -111,17 +161,21 @@ TEST(test_camera)
             bottom = fmax(bottom, at.y / 360);
             check_below(c.nearest, at.z);
             check_below(at.z, c.farthest);
-            // the ray through the place leads back to the point
+
+            // the ray through that place of the picture leads back to the point
             vector ray = camera_ray(&c, at.x, at.y);
             check_close(distance(vector_sum(c.eye, at.z, ray), points[i]), 0, 1e-9);
         }
+
+        // the window
         check_below(window.left - 0.01, left);
         check_below(right, window.right + 0.01);
         check_below(window.top - 0.01, top);
         check_below(bottom, window.bottom + 0.01);
         assert_true(right - left > 0.75 || bottom - top > 0.7);
     }
-    // in a plan the heading points to the right
+
+    // in a plan, turned by a heading of 0.7 rad, that direction points to the right
     camera plan =
         camera_fit((camera_view){.kind = CAMERA_TOP}, 0.7, points, 4, 640, 360, window);
     vector hub = camera_project(&plan, (vector){0}),

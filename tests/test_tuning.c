@@ -4,7 +4,8 @@
 #include "tests/rig_fixture.h"
 #include "tests/session_fixture.h"
 
-// Rows before an instant are the same to the last bit, and some after it differ.
+// Two runs have the same rows, to the last bit, before the instant `time`, and differ at
+// the latest at the instant `until`.
 static void assert_changes_from(const run_result *before, const run_result *after,
                                 double time, double until)
 {
@@ -45,30 +46,35 @@ TEST(test_a_gain_holds_from_the_next_sample_on)
     }
 }
 
+// After a change to 50 Hz at 0.502 s the command changes only at instants that are whole
+// periods of 20 ms apart.
 TEST(test_another_rate_samples_at_its_own_period)
 {
     OPEN_SESSION(s, "compare/hybrid");
     session_seek(&s, 0.502);
     change(&s, "control.rate", "50");
+
+    const double changed = 0.503, period = 0.02;
     const trace *t = &s.run.trace;
-    double last = -1, command = (double)NAN;
-    int samples = 0;
+    double last_time = -1, last_command = (double)NAN;
+    int compared = 0;
     for (size_t i = 0; i < t->row_count && t->rows[i].time < 0.64; i++) {
-        if (t->rows[i].time > 0.503 && t->rows[i].command != command) {
-            if (last > 0.503) {
-                const double periods = (t->rows[i].time - last) / 0.02;
+        const sample *row = &t->rows[i];
+        if (row->time > changed && row->command != last_command) {
+            if (last_time > changed) {
+                const double periods = (row->time - last_time) / period;
                 check_close(periods, round(periods), 1e-6);
-                samples++;
+                compared++;
             }
-            last = t->rows[i].time;
+            last_time = row->time;
         }
-        command = t->rows[i].command;
+        last_command = row->command;
     }
-    assert_true(samples >= 3);
+    assert_true(compared >= 3);
 }
 
-// The rate changes again and again. A sample comes one period of the rate that holds then
-// after the one before; an equal rate moves nothing.
+// The rate changes again and again. Each sample comes one period after the sample before
+// it, a period of the rate that holds by then; setting the rate it has moves nothing.
 TEST(test_rates_that_change_again_and_again)
 {
     static const struct {
@@ -83,7 +89,7 @@ TEST(test_rates_that_change_again_and_again)
     const sensed_motion at_rest = {.angle = -0.1};
 
     // the first sample is at the start
-    double expected = 0, last = 0;
+    double expected = 0, last_sample = 0;
     int samples = 0;
     for (int i = 0; i <= CHANGES; i++) {
         const double until = i < CHANGES ? changes[i].time : 0.8;
@@ -94,24 +100,24 @@ TEST(test_rates_that_change_again_and_again)
             DONE(rig_act(r, now, &at_rest, &changed, &f));
             if (r->samples > before) {
                 check_close(now, expected, 1e-12);
-                last = now;
-                expected = last + 1 / p.control.rate;
+                last_sample = now;
+                expected = last_sample + 1 / p.control.rate;
                 samples++;
             }
         }
         if (i < CHANGES) {
             p.control.rate = changes[i].rate;
             DONE(rig_retune(r, &p, until, &f));
-            expected = last + 1 / p.control.rate;
+            expected = last_sample + 1 / p.control.rate;
             assert_true(expected >= until);
         }
     }
     assert_true(samples > 25);
 
-    // where that period is over already, the next sample is at the change, and those
-    // after it follow in the new period
+    // a period so short that it has passed since the last sample when it is set: the next
+    // sample is at the change, and those after it follow in the new period
     p.control.rate = 1000;
-    assert_true(last + 1e-3 < 0.8);
+    assert_true(last_sample + 1e-3 < 0.8);
     DONE(rig_retune(r, &p, 0.8, &f));
     for (int i = 0; i < 10; i++) {
         const double now = rig_next_time(r);
@@ -126,6 +132,8 @@ TEST(test_rates_that_change_again_and_again)
 
 static int times_told;
 
+// A controller's answer to a change of its parameters that only counts how often it is
+// asked.
 static const char *count_telling(void *memory, const controller_setup *setup)
 {
     (void)memory;
@@ -134,8 +142,8 @@ static const char *count_telling(void *memory, const controller_setup *setup)
     return NULL;
 }
 
-// A controller hears of what concerns it, once, and of nothing else: not of the arm, its
-// sensors or parameters that are what they were.
+// A controller hears once of each change of a parameter that it uses. It does not hear of
+// a change of the arm or the sensors, nor of parameters that have the values they had.
 TEST(test_a_controller_is_told_what_changed_for_it)
 {
     static const struct {
@@ -155,13 +163,18 @@ TEST(test_a_controller_is_told_what_changed_for_it)
     parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
     rig *r;
     DONE(rig_create(&r, &p, NULL, &f));
+
+    // the law with another function that hears of changes
     controller counting = *r->law;
     counting.tune = count_telling;
     r->law = &counting;
     for (EACH(c, changes)) {
+        // nothing has changed
         times_told = 0;
         DONE(rig_retune(r, &p, 0, &f));
         assert_int_equal(times_told, 0);
+
+        // one parameter has
         DONE(parameter_set_text(&p, parameter_find(c->path), c->text, &f));
         DONE(rig_retune(r, &p, 0, &f));
         assert_int_equal(times_told, c->told);
@@ -169,27 +182,33 @@ TEST(test_a_controller_is_told_what_changed_for_it)
     rig_destroy(r);
 }
 
-// A ramp leads where a step does, later; a wave makes the force swing at its frequency.
+// A ramp of the commanded force leads to the same force as a step, only later; a wave
+// makes the force swing.
 TEST(test_setpoints_are_steps_ramps_and_waves)
 {
     session step, ramp, wave;
-    open_session(&step, "compare/force-integral");
-    open_session(&ramp, "compare/force-integral");
-    open_session(&wave, "compare/force-integral");
     session *all[] = {&step, &ramp, &wave};
     for (int i = 0; i < 3; i++) {
+        open_session(all[i], "compare/force-integral");
         change(all[i], "run.duration", "6");
         session_seek(all[i], 2);
     }
+
+    // from 1 N to 1.5 N at 2 s, at once and at 1 N/s
     change(&ramp, "control.force_rate", "1");
     change(&step, "control.force", "1.5");
     change(&ramp, "control.force", "1.5");
-    const sample *at = &step.run.trace.rows[trace_row_at(&step.run.trace, 2.1)];
-    const sample *slow = &ramp.run.trace.rows[trace_row_at(&ramp.run.trace, 2.1)];
-    check_below(slow->command, at->command);
-    const trace *a = &step.run.trace, *b = &ramp.run.trace;
-    check_close(LAST_ROW(b)->force, LAST_ROW(a)->force, 0.05);
 
+    // in the middle of the ramp the command is below that of the step
+    const trace *stepped = &step.run.trace, *ramped = &ramp.run.trace;
+    check_below(ramped->rows[trace_row_at(ramped, 2.1)].command,
+                stepped->rows[trace_row_at(stepped, 2.1)].command);
+
+    // in the end the forces are the same
+    check_close(LAST_ROW(ramped)->force, LAST_ROW(stepped)->force, 0.05);
+
+    // a wave of 0.3 N, which is 0.6 N from crest to trough: a third of it is felt at
+    // least
     change(&wave, "control.force_amplitude", "0.3");
     change(&wave, "control.force_frequency", "0.5");
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -199,13 +218,15 @@ TEST(test_setpoints_are_steps_ramps_and_waves)
         high = fmax(high, t->rows[i].force);
     }
     check_below(0.2, high - low);
+
     for (int i = 0; i < 3; i++) {
         session_finish(all[i]);
     }
 }
 
-// The force between two instants of a run: its extremes.
-static void extremes_of(const trace *t, double from, double to, double *low, double *high)
+// The lowest and the highest force of the rows with from < t <= to.
+static void find_force_extremes(const trace *t, double from, double to, double *low,
+                                double *high)
 {
     *low = HUGE_VAL;
     *high = -HUGE_VAL;
@@ -217,102 +238,166 @@ static void extremes_of(const trace *t, double from, double to, double *low, dou
     }
 }
 
-// In contact every law that feeds anything back follows a step of half a newton within
-// 0.15 s and a tenth (admittance an eighth) of overshoot, a ramp within 12 %, a wave of 1
-// Hz within 15 % and six degrees, and holds its force on a wall that comes and goes by a
-// millimetre.
-TEST(test_every_law_follows_its_set_point)
+// On a wall that moves to and fro by a millimetre the force stays within a tenth of the
+// newton that is commanded.
+static void check_force_on_moving_wall(const char *law)
 {
-    for (EACH_TEXT(c, "hybrid", "recovering", "speed-limit", "reverse-torque",
-                   "bang-bang", "force-pd", "impedance", "admittance", "discontinuous",
-                   "optimal", "predictive", "observer")) {
-        session step, ramp, wave, wall;
-        session *all[] = {&step, &ramp, &wave, &wall};
-        for (int k = 0; k < 4; k++) {
-            open_session(all[k], formatted("compare/%s", *c));
-            change(all[k], "run.duration", k == 0 ? "4" : "6");
-        }
-        double low, high;
-        change(&wall, "wall.motion", "sine");
-        session_seek(&wall, 6);
-        extremes_of(&wall.run.trace, 3, 6, &low, &high);
-        fail_if(low < 0.9 || high > 1.1, "%s: %g to %g N on a moving wall", *c, low,
-                high);
+    double low, high;
+    OPEN_SESSION(s, formatted("compare/%s", law));
+    change(&s, "run.duration", "6");
+    change(&s, "wall.motion", "sine");
+    session_seek(&s, 6);
+    find_force_extremes(&s.run.trace, 3, 6, &low, &high);
+    fail_if(low < 0.9 || high > 1.1, "%s: %g to %g N on a moving wall", law, low, high);
+}
 
-        session_seek(&step, 2);
-        change(&step, "control.force", "1.5");
-        session_seek(&step, 4);
-        extremes_of(&step.run.trace, 2.15, 4, &low, &high);
-        fail_if(low < 1.425 || high > 1.575, "%s: %g to %g N after a step", *c, low,
-                high);
-        extremes_of(&step.run.trace, 2, 4, &low, &high);
-        fail_if(high > 1.565, "%s: over by %g N", *c, high - 1.5);
+// A step from 1 N to 1.5 N at 2 s: 0.15 s later the force is within 5 % of the new one
+// for good, and it never overshoots by more than 0.065 N, about an eighth of the step.
+static void check_force_after_step(const char *law)
+{
+    double low, high;
+    OPEN_SESSION(s, formatted("compare/%s", law));
+    change(&s, "run.duration", "4");
+    session_seek(&s, 2);
+    change(&s, "control.force", "1.5");
+    session_seek(&s, 4);
 
-        session_seek(&ramp, 2);
-        change(&ramp, "control.force_rate", "5");
-        change(&ramp, "control.force", "3");
-        session_seek(&ramp, 3);
-        const trace *t = &ramp.run.trace;
-        for (double time = 2.1; time < 2.4; time += 5e-3) {
-            const double is = t->rows[trace_row_at(t, time)].force,
-                         wanted = 1 + 5 * (time - 2);
-            fail_if(fabs(is - wanted) > 0.12 * wanted, "%s: %g N at %g s for %g N", *c,
-                    is, time, wanted);
-        }
+    // settled
+    find_force_extremes(&s.run.trace, 2.15, 4, &low, &high);
+    fail_if(low < 1.425 || high > 1.575, "%s: %g to %g N after a step", law, low, high);
 
-        change(&wave, "control.force_amplitude", "0.2");
-        session_seek(&wave, 6);
-        double in_phase = 0, across = 0, before = 3;
-        t = &wave.run.trace;
-        for (size_t k = trace_row_at(t, 3); k < t->row_count; k++) {
-            const sample *row = &t->rows[k];
-            const double part = 2.0 / 3 * row->force * (row->time - before) / 0.2;
-            in_phase += part * sin(2 * M_PI * row->time);
-            across += part * cos(2 * M_PI * row->time);
-            before = row->time;
-        }
-        fail_if(fabs(hypot(in_phase, across) - 1) > 0.15 ||
-                    fabs(atan2(across, in_phase)) > 0.1,
-                "%s: a wave of %g, %g", *c, in_phase, across);
-        for (int k = 0; k < 4; k++) {
-            session_finish(all[k]);
-        }
+    // the overshoot
+    find_force_extremes(&s.run.trace, 2, 4, &low, &high);
+    fail_if(high > 1.565, "%s: over by %g N", law, high - 1.5);
+}
+
+// A ramp of 5 N/s from 1 N to 3 N that begins at 2 s: from 0.1 s after its beginning to
+// its end at 2.4 s the force is within 12 % of the ramp.
+static void check_force_along_ramp(const char *law)
+{
+    OPEN_SESSION(s, formatted("compare/%s", law));
+    change(&s, "run.duration", "6");
+    session_seek(&s, 2);
+    change(&s, "control.force_rate", "5");
+    change(&s, "control.force", "3");
+    session_seek(&s, 3);
+    const trace *t = &s.run.trace;
+    for (double time = 2.1; time < 2.4; time += 5e-3) {
+        const double force = t->rows[trace_row_at(t, time)].force,
+                     wanted = 1 + 5 * (time - 2);
+        fail_if(fabs(force - wanted) > 0.12 * wanted, "%s: %g N at %g s for %g N", law,
+                force, time, wanted);
     }
 }
 
-// The force that is wanted at an instant: as far along the ramp as its rate allows, up or
-// down, the wave upon it, and never below zero.
+// The part of the force between `from` and the run's end that swings at 1 Hz, as
+// in_phase * sin(2 pi t) + across * cos(2 pi t), in newtons. These are the Fourier
+// coefficients over a whole number of periods: twice the mean of the force times the sine
+// or the cosine. Each row counts for the time since the row before it.
+static void find_wave_of_1_Hz(const trace *t, double from, double *in_phase,
+                              double *across)
+{
+    const double span = LAST_ROW(t)->time - from;
+    double time_before = from;
+    *in_phase = *across = 0;
+    for (size_t i = trace_row_at(t, from); i < t->row_count; i++) {
+        const sample *row = &t->rows[i];
+        const double part = 2 * row->force * (row->time - time_before) / span;
+        *in_phase += part * sin(2 * M_PI * row->time);
+        *across += part * cos(2 * M_PI * row->time);
+        time_before = row->time;
+    }
+}
+
+// A wave of 0.2 N at 1 Hz upon the commanded force comes out with its amplitude to 15 %
+// and its phase to 0.1 rad, six degrees.
+static void check_force_along_wave(const char *law)
+{
+    const double commanded = 0.2;
+    double in_phase, across;
+    OPEN_SESSION(s, formatted("compare/%s", law));
+    change(&s, "run.duration", "6");
+    change(&s, "control.force_amplitude", "0.2");
+    session_seek(&s, 6);
+    find_wave_of_1_Hz(&s.run.trace, 3, &in_phase, &across);
+    fail_if(fabs(hypot(in_phase, across) / commanded - 1) > 0.15 ||
+                fabs(atan2(across, in_phase)) > 0.1,
+            "%s: a wave of %g N in phase, %g N across", law, in_phase, across);
+}
+
+// Every law that feeds something back makes the force in contact follow what is
+// commanded.
+TEST(test_every_law_follows_its_set_point)
+{
+    for (EACH_TEXT(law, "hybrid", "recovering", "speed-limit", "reverse-torque",
+                   "bang-bang", "force-pd", "impedance", "admittance", "discontinuous",
+                   "optimal", "predictive", "observer")) {
+        check_force_on_moving_wall(*law);
+        check_force_after_step(*law);
+        check_force_along_ramp(*law);
+        check_force_along_wave(*law);
+    }
+}
+
+// `from` after it has moved towards `to` by `most` at most.
+static double moved_towards(double to, double from, double most)
+{
+    const double distance = to - from;
+    if (fabs(distance) <= most) {
+        return to;
+    }
+    return from + copysign(most, distance);
+}
+
+// The rig's wanted force over 3 s in which the commanded one rises from 1 N to 2.5 N and
+// falls to 0.2 N. It is a ramp, which moves towards the commanded force at `rate` [N/s]
+// (at once where the rate is 0), and a wave of 3 Hz upon it, but never below zero.
+static void check_wanted_force(double rate, double amplitude)
+{
+    parameters p = rig_parameters(
+        SETTINGS("control.law=hybrid", "control.force=1", "control.force_frequency=3"));
+    p.control.force_rate = rate;
+    p.control.force_amplitude = amplitude;
+    rig *r;
+    DONE(rig_create(&r, &p, NULL, &f));
+    check_close(r->wanted_force, 1, 0);
+
+    const double step = 0.01;
+    double ramp = 1;
+    for (int k = 0; k < 300; k++) {
+        // the commanded force changes at 0.5 s and at 1.5 s
+        const double time = step * k;
+        if (k == 50) {
+            p.control.force = 2.5;
+            DONE(rig_retune(r, &p, time, &f));
+        } else if (k == 150) {
+            p.control.force = 0.2;
+            DONE(rig_retune(r, &p, time, &f));
+        }
+
+        // the ramp
+        if (rate == 0) {
+            ramp = p.control.force;
+        } else if (k > 0) {
+            ramp = moved_towards(p.control.force, ramp, rate * step);
+        }
+        DONE(rig_follow_setpoint(r, time, &f));
+        check_close(r->ramp, ramp, 1e-12);
+        check_close(r->ramp_time, time, 0);
+
+        // the wave upon it
+        const double wave = amplitude * sin(2 * M_PI * 3 * time);
+        check_close(r->wanted_force, fmax(ramp + wave, 0), 1e-12);
+    }
+    rig_destroy(r);
+}
+
 TEST(test_the_wanted_force_is_its_ramp_and_its_wave)
 {
-    for (int kind = 0; kind < 4; kind++) {
-        const double rate = kind & 1 ? 2 : 0, amplitude = kind & 2 ? 0.4 : 0;
-        parameters p = rig_parameters(SETTINGS("control.law=hybrid", "control.force=1",
-                                               "control.force_frequency=3"));
-        p.control.force_rate = rate;
-        p.control.force_amplitude = amplitude;
-        rig *r;
-        DONE(rig_create(&r, &p, NULL, &f));
-        double ramp = 1;
-        check_close(r->wanted_force, 1, 0);
-        for (int k = 0; k < 300; k++) {
-            const double time = 0.01 * k, before = 0.01 * (k - 1);
-            if (k == 50 || k == 150) {
-                p.control.force = k == 50 ? 2.5 : 0.2;
-                DONE(rig_retune(r, &p, time, &f));
-            }
-            const double way = p.control.force - ramp,
-                         most = rate * (k > 0 ? time - before : 0);
-            ramp = rate == 0 || fabs(way) <= most ? p.control.force
-                   : way > 0                      ? ramp + most
-                                                  : ramp - most;
-            DONE(rig_follow_setpoint(r, time, &f));
-            check_close(r->ramp, ramp, 1e-12);
-            check_close(r->ramp_time, time, 0);
-            const double wave = amplitude * sin(2 * M_PI * 3 * time);
-            check_close(r->wanted_force, fmax(ramp + wave, 0), 1e-12);
-        }
-        rig_destroy(r);
-    }
+    check_wanted_force(0, 0);
+    check_wanted_force(2, 0);
+    check_wanted_force(0, 0.4);
+    check_wanted_force(2, 0.4);
 }
 
 // What a change of the rig's own numbers makes of delay, jitter, limits and periods.
@@ -325,6 +410,8 @@ TEST(test_delays_and_limits_follow_a_change)
     DONE(rig_create(&r, &p, NULL, &f));
     check_close(r->delay, 1e-3 + 0.25 / 200, 1e-15);
     check_close(r->period, 5e-3, 1e-17);
+
+    // delay, jitter and the limit of the voltage, which is the converter's range too
     p.control.delay = 2e-3;
     p.control.jitter = 1e-4;
     p.motor.voltage_limit = 3;
@@ -333,18 +420,20 @@ TEST(test_delays_and_limits_follow_a_change)
     check_close(r->jitter, 1e-4, 0);
     check_close(r->voltage_limit, 3, 0);
     check_close(r->dac.range, 3, 0);
+
+    // the rate, whose period is part of the delay
     p.control.rate = 100;
     p.control.delay_periods = 0.5;
     DONE(rig_retune(r, &p, 0, &f));
     check_close(r->delay, 2e-3 + 0.5 / 100, 1e-15);
     check_close(r->period, 1e-2, 1e-17);
 
-    // before the first sample the clock begins as it would have
+    // a change before the first sample leaves the beginning of the clock where it was
     check_close(r->clock_start, 0, 0);
     check_close(r->sample_time, 0, 0);
     assert_int_equal(r->clock_samples, 0);
 
-    // sensors alone do not ask the law
+    // a change of a sensor alone does not ask the law, and keeps what it knows
     p.sensor.dac_bits = 8;
     DONE(rig_retune(r, &p, 0, &f));
     check_relative(r->dac.step, 6.0 / 256, 1e-14);
@@ -352,6 +441,8 @@ TEST(test_delays_and_limits_follow_a_change)
     rig_destroy(r);
 }
 
+// A law that plans its whole command at the start cannot take a change in the course of
+// the run: the change applies from the start instead.
 TEST(test_a_law_that_plans_at_its_start_takes_no_dated_change)
 {
     OPEN_SESSION(s, "compare/inverse-dynamics");
@@ -371,8 +462,8 @@ TEST(test_a_saved_tuned_run_is_the_same)
     free(save_and_compare(&s));
 }
 
-// Without a law, or under one that hears of every change, all of control.* may change at
-// any time.
+// Without a law, or under a law that hears of every change, all of control.* but the law
+// itself may change at any time.
 TEST(what_nobody_took_at_the_start_can_change)
 {
     parameters p = fresh(ARM_CORRECTED);
@@ -385,8 +476,8 @@ TEST(what_nobody_took_at_the_start_can_change)
     p.control.law = LAW_PLUGIN; // whose parameters are not known
     assert_false(rig_can_change(&p, force));
 
-    // one that plans at its start has taken the limit of its command; of the arm it takes
-    // no note
+    // a law that plans at its start has used the limit of the voltage for it, but not the
+    // arm's stiffness
     p.control.law = LAW_INVERSE_DYNAMICS;
     assert_false(rig_can_change(&p, PARAMETER_INDEX(motor.voltage_limit)));
     assert_true(rig_can_change(&p, PARAMETER_INDEX(arm.k2)));
