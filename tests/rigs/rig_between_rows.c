@@ -5,8 +5,9 @@
 
 #include "tests/rigs/random_rigs.h"
 
-// The instant of a change of the voltage in or at the ends of (from, to); (double)NAN if
-// there is none.
+// The instant between two rows, at `from` and `to`, at which the voltage changes; NaN if
+// there is none. *next is a sample at or before the first to be looked at: it is moved
+// on.
 static double change_within(const motion *m, int *next, double from, double to)
 {
     while (*next < m->sample_count && m->samples[*next].applied < from - INSTANT) {
@@ -52,7 +53,8 @@ pieces pieces_of(const motion *m, const double *column)
             continue;
         }
 
-        // from the row before, from the one behind
+        // the values on both sides of the jump: the line through the two rows before it,
+        // and the line through the two rows after it, both drawn on to its instant
         double before = column[i], after = column[i + 1];
         if (i > 0 && t[i] - t[i - 1] > INSTANT) {
             before += (column[i] - column[i - 1]) / (t[i] - t[i - 1]) * (at - t[i]);
@@ -65,15 +67,16 @@ pieces pieces_of(const motion *m, const double *column)
         made.of[made.count++] = (piece){at, t[i + 1], after, column[i + 1], 0, true};
     }
 
-    // how far the function may be from its line
+    // how far the function may be from its line: with D, twice the largest second
+    // derivative nearby, by D h^2 / 8 between two rows, by D h^2 where it is drawn on
     for (size_t i = 0; i < made.count; i++) {
-        double most = 0;
+        double largest_bend = 0;
         for (size_t j = i >= 3 ? i - 3 : 0; j + 1 < made.count && j <= i + 2; j++) {
-            most = fmax(most, bend(&made.of[j], &made.of[j + 1]));
+            largest_bend = fmax(largest_bend, bend(&made.of[j], &made.of[j + 1]));
         }
         piece *p = &made.of[i];
         const double h = p->drawn ? spacing : p->to - p->from;
-        p->error = 2 * most * h * h / (p->drawn ? 1 : 8) +
+        p->error = 2 * largest_bend * h * h / (p->drawn ? 1 : 8) +
                    1e-12 * (fabs(p->begin) + fabs(p->end));
     }
     return made;
@@ -91,6 +94,7 @@ double integral(const pieces *f, double from, double to, double *error)
     *error = 0;
     for (size_t i = 0; i < f->count; i++) {
         const piece *p = &f->of[i];
+        // the part of the piece within the interval, by the trapezoidal rule
         const double a = fmax(p->from, from), b = fmin(p->to, to);
         if (b > a) {
             sum += (b - a) * (value_within(p, a) + value_within(p, b)) / 2;
@@ -119,9 +123,9 @@ blow_list jumps_of(const motion *m, const double *column)
 {
     blow_list made = {.of = malloc(m->count * sizeof(blow))};
     for (size_t i = 0; i + 1 < m->count; i++) {
-        const double by = column[i + 1] - column[i];
-        if (m->of[TIME][i + 1] <= m->of[TIME][i] && by != 0) {
-            made.of[made.count++] = (blow){m->of[TIME][i], by};
+        const double jump = column[i + 1] - column[i];
+        if (m->of[TIME][i + 1] <= m->of[TIME][i] && jump != 0) {
+            made.of[made.count++] = (blow){m->of[TIME][i], jump};
         }
     }
     return made;

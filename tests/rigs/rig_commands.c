@@ -3,7 +3,8 @@
 
 #include "tests/rigs/random_rigs.h"
 
-// The row of an instant's first one, or the first one after it.
+// The first row at the instant t or after it, by bisection; the number of rows if there
+// is none.
 static size_t row_at(const motion *m, double t)
 {
     size_t low = 0, high = m->count;
@@ -20,11 +21,15 @@ static size_t row_at(const motion *m, double t)
 
 void follow_commands(const rig *r, motion *m)
 {
-    const double most = number(r, "motor.current_limit");
-    const double limit = is(r, "motor.drive", "current") && most > 0
-                             ? fmin(number(r, "motor.voltage_limit"),
-                                    most / number(r, "motor.transconductance"))
-                             : number(r, "motor.voltage_limit");
+    // the limit of the command; that of the current is one too if the drive gives a
+    // current
+    double limit = number(r, "motor.voltage_limit");
+    const double current_limit = number(r, "motor.current_limit");
+    if (is(r, "motor.drive", "current") && current_limit > 0) {
+        limit = fmin(limit, current_limit / number(r, "motor.transconductance"));
+    }
+
+    // each command is in the rows after its sample
     const double bits = is(r, "sensor.ideal", "true") ? 0 : number(r, "sensor.dac_bits");
     const double delay = number(r, "control.delay") +
                          number(r, "control.delay_periods") / number(r, "control.rate");
@@ -35,7 +40,9 @@ void follow_commands(const rig *r, motion *m)
         s->voltage = converted(fmax(-limit, fmin(limit, s->command)), bits, limit);
     }
 
-    // after the delay, or with the sample so many later if that comes first
+    // a command takes effect after the delay. A delay of so many periods, rounded up,
+    // ends at the latest with the sample that comes so many samples later, which jitter
+    // may make early
     const double periods = delay * number(r, "control.rate");
     const int later = (int)ceil(periods - 1e-9);
     for (int k = 0; k < m->sample_count; k++) {
@@ -61,7 +68,9 @@ void check_rows(rig *r, motion *m)
             continue;
         }
 
-        // what was read last
+        // the readings of the last sample stay in the rows until the next one. Of several
+        // rows at the instant of a sample the last has its readings; the others are not
+        // compared
         while (k + 1 < m->sample_count && m->samples[k + 1].time <= t - INSTANT) {
             k++;
         }
@@ -79,7 +88,8 @@ void check_rows(rig *r, motion *m)
             }
         }
 
-        // what acts on the motor
+        // the voltage of the command that acts; where one takes effect at the row's
+        // instant both are right
         while (applied + 1 < m->sample_count &&
                m->samples[applied + 1].applied <= t - INSTANT) {
             applied++;
@@ -99,15 +109,15 @@ void check_rows(rig *r, motion *m)
 void check_instants(rig *r, const motion *m)
 {
     const double period = 1 / number(r, "control.rate"),
-                 width = number(r, "control.jitter");
-    double first = (double)INFINITY, last = -(double)INFINITY;
+                 jitter = number(r, "control.jitter");
+    double least_late = (double)INFINITY, most_late = -(double)INFINITY;
     for (int k = 0; k < m->sample_count; k++) {
         const double late = m->samples[k].time - k * period;
-        first = fmin(first, late);
-        last = fmax(last, late);
+        least_late = fmin(least_late, late);
+        most_late = fmax(most_late, late);
     }
     if (m->sample_count > 0) {
-        expect(r, "scatter of instants", 0, last - first, 0, width + INSTANT);
-        expect(r, "lateness of instants", 0, last, -width, width + INSTANT);
+        expect(r, "scatter of instants", 0, most_late - least_late, 0, jitter + INSTANT);
+        expect(r, "lateness of instants", 0, most_late, -jitter, jitter + INSTANT);
     }
 }

@@ -8,11 +8,12 @@ void lag_take_blow(lag *l, double size)
     if (l->T > 0) {
         l->y += size / l->T;
     } else if (l->S > 0) {
-        l->w += size / l->S; // the charge of an instant leaks as any other
+        l->w += size / l->S; // y is unchanged after the instant, its charge leaks
     }
 }
 
-// Follows a straight line, to the last digit.
+// Goes on by the time h while the function is the straight line from `begin` to `end`, to
+// within `error`. The solution of both equations of a lag is exact.
 static void lag_follow(lag *l, double begin, double end, double h, double error)
 {
     if (h <= 0) {
@@ -43,15 +44,21 @@ static void lag_follow(lag *l, double begin, double end, double h, double error)
     l->y_error = error + (l->y_error - error) * decay;
 }
 
+// A hysteresis holds its value p while (1 - share) x <= p <= (1 + share) x and is taken
+// along at these ends. Both bounds of p follow the value x of the lag, from which
+// `ripple` is how far it may have been since the last call.
 static void play_follow(follower *f, double ripple)
 {
-    const double x = f->state.y, h = f->share;
-    const double e = f->state.y_error + f->rounding + ripple;
-    f->play_low = fmax((1 - h) * (x - e), fmin(f->play_low, (1 + h) * (x - e)));
-    f->play_high = fmax((1 - h) * (x + e), fmin(f->play_high, (1 + h) * (x + e)));
+    const double error = f->state.y_error + f->rounding + ripple;
+    const double lowest = f->state.y - error, highest = f->state.y + error;
+    f->play_low =
+        fmax((1 - f->share) * lowest, fmin(f->play_low, (1 + f->share) * lowest));
+    f->play_high =
+        fmax((1 - f->share) * highest, fmin(f->play_high, (1 + f->share) * highest));
 }
 
-// A blow. Without a lag it is larger than any play, which follows from above.
+// Takes a blow. Without a lag the value is infinite for an instant, after which the
+// hysteresis comes down with it from above.
 static void follower_strike(follower *f, double size)
 {
     lag_take_blow(&f->state, size);
@@ -86,6 +93,8 @@ void follower_reach(follower *f, double t)
         if (f->now >= t) {
             return;
         }
+
+        // the straight line to the end of the piece or to t
         const double to = fmin(p->to, t), h = to - f->now;
         const double begin = value_within(p, f->now), end = value_within(p, to);
         const double bent = p->to > p->from ? turning(&f->state, p, h) : 0;
