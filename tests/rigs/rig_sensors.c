@@ -6,6 +6,7 @@
 
 #include "tests/rigs/random_rigs.h"
 
+// Without bits there are no steps, but the range limits the value too.
 double converted(double value, double bits, double range)
 {
     if (bits == 0) {
@@ -14,12 +15,15 @@ double converted(double value, double bits, double range)
     const double step = 2 * range / exp2(bits);
     return fmax(-range, fmin(range - step, round(value / step) * step));
 }
-// Whether something happens in this very instant, so that both sides of it count.
-static bool is_unclear(const motion *m, int k)
+
+// Whether a command takes effect or an event happens at the very instant of a sample, so
+// that its readings may be those just before it or just after it. Commands of the last
+// seven samples may still be on their way.
+static bool is_on_jump(const motion *m, int k)
 {
     const double t = m->samples[k].time;
-    for (int j = k; j >= 0 && j > k - 8; j--) {
-        if (j < k && fabs(m->samples[j].applied - t) < INSTANT) {
+    for (int j = k - 1; j >= 0 && j > k - 8; j--) {
+        if (fabs(m->samples[j].applied - t) < INSTANT) {
             return true;
         }
     }
@@ -33,15 +37,16 @@ static bool is_unclear(const motion *m, int k)
     return false;
 }
 
+// What comes between a sensor's element and its reading.
 typedef struct channel {
-    double gain_error, offset; // of what is shown
-    double range;              // 0: none
-    double volts;              // per unit
-    double bits, adc_range;
-    bool ideal;
+    double gain_error, offset; // errors of the element
+    double range;              // of the element; 0 stands for none
+    double volts;              // at the converter per unit of the reading
+    double bits, adc_range;    // of the converter
+    bool ideal;                // nothing comes between
 } channel;
 
-// A reading through gain, range and converter.
+// What a sensor reads of a value: with errors, within its range, converted to steps.
 static double shown(const channel *c, double value)
 {
     if (c->ideal) {
@@ -54,6 +59,8 @@ static double shown(const channel *c, double value)
     return converted(c->volts * value, c->bits, c->adc_range) / c->volts;
 }
 
+// The channel of a sensor at the instant t of the run; `volts` is the path of its volts
+// per unit.
 static channel channel_of(const rig *r, const char *sensor, const char *volts,
                           bool has_range, double t)
 {
@@ -82,12 +89,16 @@ double expected_fsr_volts(const rig *r, double x)
            (divider + R);
 }
 
-// The FSR's circuit: resistance by a power law, divider, gain stage, converter, and back.
+// What the force sensor (FSR) reads of a force: the force makes a resistance by a power
+// law, the circuit a voltage of it and the converter steps; the same formulas take these
+// back to a force.
 static double fsr_shown(const rig *r, double x, double t)
 {
     if (is(r, "sensor.ideal", "true")) {
         return x;
     }
+
+    // errors of the element; it gives nothing without a force and no more when saturated
     const double saturation = number(r, "sensor.fsr_saturation");
     x = (1 + number_at(r, "sensor.fsr_gain_error", t)) * x +
         number_at(r, "sensor.fsr_offset", t);
@@ -95,12 +106,16 @@ static double fsr_shown(const rig *r, double x, double t)
     if (!(x > 0)) {
         return 0;
     }
+
+    // the converter's voltage
     const double R1 = number(r, "sensor.fsr_resistance"),
                  p = number(r, "sensor.fsr_exponent");
     const double divider = number(r, "sensor.fsr_divider");
     const double full = number(r, "sensor.fsr_supply") * number(r, "sensor.fsr_gain");
     const double volts = converted(expected_fsr_volts(r, x), number(r, "sensor.adc_bits"),
                                    number(r, "sensor.adc_range"));
+
+    // and back
     if (volts <= 0) {
         return 0;
     }
@@ -110,6 +125,7 @@ static double fsr_shown(const rig *r, double x, double t)
     return fmin(saturation, pow(divider * (full / volts - 1) / R1, -1 / p));
 }
 
+// Reading number c of a sample lies within these bounds, but for rounding.
 static void expect_reading(rig *r, const char *what, const sample *s, int c, double low,
                            double high)
 {
@@ -131,17 +147,19 @@ void check_angles(rig *r, const motion *m)
         while (i + 1 < angle.count && angle.of[i].to < s->time - 1e-13) {
             i++;
         }
+
+        // angle and velocity of the hub, and by how much they may be wrong
         const double q = value_within(&angle.of[i], s->time);
         const double w = value_within(&rate.of[i], s->time);
         const double q_error = angle.of[i].error + 1e-13;
         double w_error = rate.of[i].error + 1e-13;
         double w_low = w - w_error, w_high = w + w_error;
-        if (is_unclear(m, k) && i + 1 < rate.count) {
+        if (is_on_jump(m, k) && i + 1 < rate.count) {
             w_low = fmin(w_low, rate.of[i + 1].begin);
             w_high = fmax(w_high, rate.of[i + 1].begin);
         }
 
-        // encoder
+        // the encoder shows whole counts
         const double gain = 1 + number_at(r, "sensor.encoder_gain_error", s->time);
         const double offset = number_at(r, "sensor.encoder_offset", s->time);
         double low = q - q_error, high = q + q_error;
@@ -149,14 +167,15 @@ void check_angles(rig *r, const motion *m)
             low = gain * low + offset;
             high = gain * high + offset;
             if (counts > 0) {
-                const double one = 2 * M_PI / counts;
-                low = round(low / one - 1e-9) * one;
-                high = round(high / one + 1e-9) * one;
+                const double count = 2 * M_PI / counts;
+                low = round(low / count - 1e-9) * count;
+                high = round(high / count + 1e-9) * count;
             }
         }
         expect_reading(r, "encoder", s, 0, low, high);
 
-        // tachometer
+        // the tachometer has a ripple over the angle, whose slope makes an error of the
+        // angle one of the velocity
         const double tacho_gain =
             1 + number_at(r, "sensor.tachometer_gain_error", s->time);
         const double tacho_offset = number_at(r, "sensor.tachometer_offset", s->time);
@@ -175,8 +194,7 @@ void check_angles(rig *r, const motion *m)
     free(rate.of);
 }
 
-// The bounds of what goes into the converter at a sample, of a sensor that a lag stands
-// for.
+// Bounds of what a sensor with a lag gives to its converter at a sample.
 static void bounds_at(const motion *m, int k, follower *f, double *low, double *high)
 {
     follower_reach(f, m->samples[k].time);
@@ -185,21 +203,22 @@ static void bounds_at(const motion *m, int k, follower *f, double *low, double *
     *low = value - error;
     *high = value + error;
 
-    // both sides of an instant in which something happens
-    if (is_unclear(m, k)) {
-        lag other = f->state;
+    // where something happens at this instant: just after it, too
+    if (is_on_jump(m, k)) {
+        lag after = f->state;
         if (f->blow < f->blows->count &&
             fabs(f->blows->of[f->blow].time - m->samples[k].time) < INSTANT) {
-            lag_take_blow(&other, f->blows->of[f->blow].size);
+            lag_take_blow(&after, f->blows->of[f->blow].size);
         }
-        if (other.T == 0 && f->piece < f->of->count) {
-            other.y = f->of->of[f->piece].begin;
+        if (after.T == 0 && f->piece < f->of->count) {
+            after.y = f->of->of[f->piece].begin;
         }
-        *low = fmin(*low, other.y - other.w - error);
-        *high = fmax(*high, other.y - other.w + error);
+        *low = fmin(*low, after.y - after.w - error);
+        *high = fmax(*high, after.y - after.w + error);
     }
 }
 
+// The kind under which a reading of the force is counted.
 static const char *force_kind(bool ideal, double hysteresis, double delay)
 {
     if (ideal) {
@@ -211,7 +230,8 @@ static const char *force_kind(bool ideal, double hysteresis, double delay)
     return hysteresis > 0 ? "force_reading with hysteresis" : "force_reading";
 }
 
-// Goes on to changes of the rise time up to an instant.
+// Goes on to each change of the force sensor's rise time until the instant t, and makes
+// it.
 static void follow_rise_time(const rig *r, follower *f, double t)
 {
     const struct change *end = r->changes + r->change_count;
@@ -224,6 +244,7 @@ static void follow_rise_time(const rig *r, follower *f, double t)
     }
 }
 
+// The force sensor: a lag, a hysteresis of the width `share` behind it, and the circuit.
 void check_fsr(rig *r, const motion *m, const pieces *force, const blow_list *impulses)
 {
     const bool ideal = is(r, "sensor.ideal", "true");
@@ -237,6 +258,8 @@ void check_fsr(rig *r, const motion *m, const pieces *force, const blow_list *im
             follow_rise_time(r, &f, m->samples[k].time);
         }
         bounds_at(m, k, &f, &low, &high);
+
+        // what the hysteresis holds, which this value may take along
         if (share > 0) {
             const double up =
                 fmax((1 - share) * high, fmin(f.play_high, (1 + share) * high));
@@ -251,11 +274,15 @@ void check_fsr(rig *r, const motion *m, const pieces *force, const blow_list *im
     }
 }
 
+// The sensors that a rig need not have: of the force (piezo), of the arm's bending (film)
+// and of the hub's acceleration.
 void check_optional(rig *r, const motion *m, const pieces *force,
                     const blow_list *impulses)
 {
     const bool ideal = is(r, "sensor.ideal", "true"), law = m->sample_count > 0;
     const bool piezo = is(r, "sensor.piezo", "true") || is(r, "sensor.force", "piezo");
+
+    // the three quantities that they sense
     double *bending = malloc(m->count * sizeof(double));
     for (size_t i = 0; i < m->count; i++) {
         bending[i] = m->of[LAST_ANGLE][i] - m->of[FIRST_ANGLE][i];
@@ -267,6 +294,7 @@ void check_optional(rig *r, const motion *m, const pieces *force,
     const channel hub_channel =
         channel_of(r, "accelerometer", "sensor.accelerometer_gain", true, 0);
 
+    // their filters
     follower p =
         follower_of(force, impulses, ideal ? 0 : number(r, "sensor.piezo_rise_time"),
                     ideal ? 0 : number(r, "sensor.piezo_leak_time"));
@@ -289,6 +317,7 @@ void check_optional(rig *r, const motion *m, const pieces *force,
             expect_reading(r, "film", s, 4, shown(&film_channel, low),
                            shown(&film_channel, high));
         }
+
         // the command of the first sample may act at once, before the first row
         if (is(r, "sensor.accelerometer", "true") && (k > 0 || a.state.T > 0)) {
             bounds_at(m, k, &a, &low, &high);

@@ -5,14 +5,17 @@
 
 #include "tests/rigs/random_rigs.h"
 
+// What the events of a run say of its contacts.
 typedef struct touches {
-    double first,
-        release; // first contact, first release [s], (double)NAN if there is none
-    int impacts;
+    double first;    // the first contact [s]; NaN if there is none
+    double release;  // the end of that contact [s]; NaN if it lasts
+    int impacts;     // how many there were
     double impulse;  // of the first impact [N s]
-    double impulses; // of all
+    double impulses; // of all impacts [N s]
 } touches;
 
+// Goes through the events of a run. An impact is the first contact and its end in one,
+// unless an event "contact" at the same instant says that contact goes on after it.
 static touches touches_of(const motion *m)
 {
     touches t = {.first = (double)NAN, .release = (double)NAN};
@@ -25,13 +28,15 @@ static touches touches_of(const motion *m)
             t.release = impact ? e.time : (double)NAN;
         }
         if (strcmp(e.kind, "contact") == 0 && e.time == t.first) {
-            t.release = (double)NAN; // contact goes on after the impact
+            t.release = (double)NAN;
         }
         if (isnan(t.release) && strcmp(e.kind, "release") == 0) {
             t.release = e.time;
         }
         if (impact) {
-            t.impulse = t.impacts == 0 ? e.impulse : t.impulse;
+            if (t.impacts == 0) {
+                t.impulse = e.impulse;
+            }
             t.impacts++;
             t.impulses += e.impulse;
         }
@@ -39,11 +44,14 @@ static touches touches_of(const motion *m)
     return t;
 }
 
-// The largest value within an interval: of the lines, and of what may lie above them.
+// Bounds of the largest value of a function.
 typedef struct largest {
     double low, high;
 } largest;
 
+// Bounds of the largest value within an interval. It is not below the ends of the lines
+// that lie in the interval (which may be wrong where they are drawn on), and not above
+// the lines that touch it and their errors.
 static largest largest_within(const pieces *f, double from, double to)
 {
     largest l = {-(double)INFINITY, -(double)INFINITY};
@@ -59,13 +67,16 @@ static largest largest_within(const pieces *f, double from, double to)
     return l;
 }
 
-// The largest force of the run; 0 where only impacts gave one.
+// The largest force that the summary tells; 0 if it tells none, as after impacts alone.
 static double peak_of(const motion *m)
 {
     const double peak = quantity(m, "peak_force_N");
     return isnan(peak) ? 0 : peak;
 }
 
+// A peak of the summary, `what`, is the largest force between two instants, and the time
+// it tells of it, `when`, counted from the first of them, is one at which the force may
+// be that large.
 static void check_peak(rig *r, const motion *m, const pieces *force, const char *what,
                        const char *when, double first, double to)
 {
@@ -87,7 +98,8 @@ static double gap_to_face(const motion *m, size_t i)
     return m->of[GAP][i] + or_zero(m->of[FACE_DEPTH][i]);
 }
 
-// Leaves of the wall by more than 1 um after first contact: surely, and perhaps.
+// How often the arm leaves the wall by more than 1 um after the first contact: bounds, as
+// a gap of 1 um may be told either way within a nanometre.
 static void check_separations(rig *r, const motion *m, double first)
 {
     const double far = 1e-6, unsure = 1e-9;
@@ -98,6 +110,8 @@ static void check_separations(rig *r, const motion *m, double first)
         if (m->of[TIME][i] <= first) {
             continue;
         }
+
+        // each leave counts once, until the arm is back at the wall
         if (gap > far + unsure && !away_surely) {
             surely++;
             away_surely = true;
@@ -113,9 +127,50 @@ static void check_separations(rig *r, const motion *m, double first)
     expect(r, "separations", first, quantity(m, "separations"), surely, perhaps);
 }
 
-// The mean over the last 0.1 s, and what is made of it.
+// The settling time: since the first contact, until the force stays within 5 % of its
+// final value. A wider and a narrower band, by the error of that value and of the force,
+// bound it.
+static void check_settling(rig *r, const motion *m, const pieces *force, double contact,
+                           double steady, double steady_error)
+{
+    const double wide = 0.05 * steady + steady_error,
+                 narrow = 0.05 * steady - steady_error;
+    double earliest = contact, latest = contact;
+    for (size_t i = 0; i < force->count; i++) {
+        const piece *p = &force->of[i];
+        if (p->from < contact - INSTANT) {
+            continue;
+        }
+
+        // outside the wide band at an end of this piece
+        const double off_at_end = fabs(p->end - steady);
+        const double farthest = fmax(fabs(p->begin - steady), off_at_end);
+        if (farthest - p->error > wide) {
+            earliest = off_at_end > wide + p->error ? p->to : p->from;
+        }
+
+        // perhaps outside the narrow band
+        if (farthest + p->error > narrow) {
+            latest = p->to;
+        }
+    }
+
+    // a summary without a settling time: the force leaves the band until the end
+    const double settled = quantity(m, "settling_time_s");
+    if (isnan(settled)) {
+        expect(r, "settling_time_s is null, settled", m->ends, latest,
+               m->ends - 2 * spacing, (double)INFINITY);
+    } else {
+        expect(r, "settling_time_s", m->ends, settled, earliest - contact - INSTANT,
+               latest - contact + INSTANT);
+    }
+}
+
+// The steady force, which is the mean over the last 0.1 s; overshoot and settling time,
+// which are relative to it.
 static void check_steady(rig *r, const motion *m, const pieces *force, const touches *t)
 {
+    // the mean
     double error;
     const double span = fmin(0.1, m->ends);
     const double steady = integral(force, m->ends - span, m->ends, &error) / span;
@@ -124,69 +179,43 @@ static void check_steady(rig *r, const motion *m, const pieces *force, const tou
     expect_near(r, "steady_force_N", m->ends, said, steady, error);
     expect(r, "steady within peak", m->ends, said, -1e-9, peak * (1 + 1e-9) + 1e-9);
 
-    // overshoot
+    // shares of a force near zero say nothing
     if (steady > 1e-3) {
         const double over = 100 * (peak - steady) / steady;
         expect_near(r, "force_overshoot_percent", m->ends,
                     quantity(m, "force_overshoot_percent"), over,
                     100 * peak / steady * (error / steady + 1e-9));
-    }
-
-    // settled once the force stays within 5 % of its final value: with a wider and a
-    // narrower band
-    if (steady > 1e-3) {
-        double earliest = t->first, latest = t->first;
-        for (size_t i = 0; i < force->count; i++) {
-            const piece *p = &force->of[i];
-            const double off = fmax(fabs(p->begin - steady), fabs(p->end - steady));
-            if (p->from < t->first - INSTANT) {
-                continue;
-            }
-            if (off - p->error > 0.05 * steady + error) {
-                earliest = fabs(p->end - steady) > 0.05 * steady + error + p->error
-                               ? p->to
-                               : p->from;
-            }
-            if (off + p->error > 0.05 * steady - error) {
-                latest = p->to;
-            }
-        }
-        const double settled = quantity(m, "settling_time_s");
-        if (isnan(settled)) {
-            expect(r, "settling_time_s is null, settled", m->ends, latest,
-                   m->ends - 2 * spacing, (double)INFINITY);
-        } else {
-            expect(r, "settling_time_s", m->ends, settled, earliest - t->first - INSTANT,
-                   latest - t->first + INSTANT);
-        }
+        check_settling(r, m, force, t->first, steady, error);
     }
 }
 
-// Whether the commanded force is the same all the time.
-static bool commands_one_force(const rig *r)
+// Whether the commanded force is constant: no wave upon it, and no change of it.
+static bool has_constant_command(const rig *r)
 {
-    bool one = number(r, "control.force_amplitude") == 0;
     for (int k = 0; k < r->change_count; k++) {
-        one = one && strcmp(r->changes[k].path, "control.force") != 0;
+        if (strcmp(r->changes[k].path, "control.force") == 0) {
+            return false;
+        }
     }
-    return one;
+    return number(r, "control.force_amplitude") == 0;
 }
 
-// The largest mean of the force over 5 ms, impulses included, with windows from 20 ms
-// after first contact on: bounds of it.
+// The largest mean of the force over a window of 5 ms, impulses included, of all windows
+// that begin 20 ms after the first contact or later. It lies between the largest mean of
+// the windows that end with a piece, and the same with all that a window which lies
+// elsewhere by less than a spacing may have more.
 static void check_smoothed(rig *r, const motion *m, const pieces *force,
                            const blow_list *impulses, const touches *t)
 {
     const double window = 0.005, from = t->first + 0.02;
     const double said = quantity(m, "smoothed_over_command_N");
     const double wanted = quantity(m, "force_command_N");
-    if (isnan(said) || m->ends < from + window || !commands_one_force(r)) {
+    if (isnan(said) || m->ends < from + window || !has_constant_command(r)) {
         return;
     }
 
-    // running integral at the ends of pieces
-    double *sum = malloc((force->count + 1) * sizeof(double)), low = -(double)INFINITY,
-           high = -(double)INFINITY;
+    // integrals of the force from the start to the ends of pieces
+    double *sum = malloc((force->count + 1) * sizeof(double));
     double error = 0;
     sum[0] = 0;
     for (size_t i = 0; i < force->count; i++) {
@@ -195,31 +224,42 @@ static void check_smoothed(rig *r, const motion *m, const pieces *force,
         error = fmax(error, p->error);
     }
 
-    // windows that end with a piece or begin with one, and with each impulse at an end
+    // a window for each piece, from `begin` to the end of the piece
+    double low = -(double)INFINITY, high = -(double)INFINITY;
     size_t tail = 0;
     for (size_t i = 0; i < force->count; i++) {
         const double end = force->of[i].to, begin = end - window;
         if (begin < from - spacing) {
             continue;
         }
+
+        // the force: what is left of the piece in which the window begins, and the pieces
+        // after it
         while (force->of[tail].to < begin) {
             tail++;
         }
         const piece *p = &force->of[tail];
         const double part = (p->to - begin) * (value_within(p, begin) + p->end) / 2 +
                             sum[i + 1] - sum[tail + 1];
-        double struck = 0, perhaps = 0;
+
+        // the impulses within the window, and those within a spacing of it as well
+        double within = 0, nearby = 0;
         for (size_t k = 0; k < impulses->count; k++) {
-            const double at = impulses->of[k].time;
-            struck += at > begin + 1e-12 && at < end + 1e-12 ? impulses->of[k].size : 0;
-            perhaps +=
-                at > begin - spacing && at < end + spacing ? impulses->of[k].size : 0;
+            const double at = impulses->of[k].time, size = impulses->of[k].size;
+            if (at > begin + 1e-12 && at < end + 1e-12) {
+                within += size;
+            }
+            if (at > begin - spacing && at < end + spacing) {
+                nearby += size;
+            }
         }
+
+        // both bounds
         if (begin >= from) {
-            low = fmax(low, (part + struck) / window);
+            low = fmax(low, (part + within) / window);
         }
         const double rest = 2 * spacing * (fabs(force->of[i].end) + fabs(p->begin));
-        high = fmax(high, (part + perhaps + rest) / window);
+        high = fmax(high, (part + nearby + rest) / window);
     }
     free(sum);
     const double slack = error + 1e-9 * fabs(high) + 1e-9;
@@ -228,7 +268,9 @@ static void check_smoothed(rig *r, const motion *m, const pieces *force,
            peak_of(m) + t->impulses / window + 1e-9);
 }
 
-// The largest reading of a sensor of 1 ms, of all that the force does.
+// The peak that a sensor with a lag of 1 ms would read: the follower's largest value,
+// before and after the impulses at the end of each piece. Between these ends it may be
+// higher where it turns.
 static void check_sensor_peak(rig *r, const motion *m, const pieces *force,
                               const blow_list *impulses)
 {
@@ -239,6 +281,7 @@ static void check_sensor_peak(rig *r, const motion *m, const pieces *force,
     double low = -(double)INFINITY, high = -(double)INFINITY;
     follower f = {.of = force, .blows = impulses, .state = {.T = 1e-3}};
     for (size_t i = 0; i < force->count; i++) {
+        // just before the end of the piece, and just after the impulses there
         const double end = force->of[i].to;
         follower_reach(&f, end);
         lag after = f.state;
@@ -246,6 +289,8 @@ static void check_sensor_peak(rig *r, const motion *m, const pieces *force,
              k < impulses->count && impulses->of[k].time <= end + 1e-13; k++) {
             lag_take_blow(&after, impulses->of[k].size);
         }
+
+        // both bounds
         const double above =
             turning(&f.state, &force->of[i], force->of[i].to - force->of[i].from);
         low = fmax(low, after.y - after.y_error);
@@ -267,18 +312,20 @@ double largest_of(const motion *m, const double *column, double sign)
     return most;
 }
 
-// The largest speed towards the wall up to an instant, or beyond it without contact.
-static largest speed_towards(const motion *m, bool before, double t)
+// Bounds of the largest speed towards the wall in free flight, over the instants with
+// after < t <= until.
+static largest speed_towards_wall(const motion *m, double after, double until)
 {
     largest l = {-(double)INFINITY, -(double)INFINITY};
     pieces gap_rate = pieces_of(m, m->of[GAP_VELOCITY]);
     for (size_t i = 0; i < m->count; i++) {
-        const double at = m->of[TIME][i];
-        if (before ? at <= t && m->of[CONTACT][i] == 0
-                   : at > t && m->of[CONTACT][i] == 0) {
+        const double t = m->of[TIME][i];
+        if (t > after && t <= until && m->of[CONTACT][i] == 0) {
             l.low = fmax(l.low, -m->of[GAP_VELOCITY][i]);
         }
     }
+
+    // between two rows it may be higher
     double error = 0;
     for (size_t i = 0; i < gap_rate.count; i++) {
         error = fmax(error, gap_rate.of[i].error);
@@ -288,27 +335,30 @@ static largest speed_towards(const motion *m, bool before, double t)
     return l;
 }
 
-// The largest speed towards a face in flights after an instant: a mean between two rows
-// is below it, by no more than means of neighbours differ.
+// Bounds of the largest speed towards the wall's own face, which moves, in flights after
+// an instant. The speed between two rows is the difference of their gaps over the time.
+// It is a mean, below the largest speed by no more than neighbouring means differ.
 static largest speed_towards_face(const motion *m, double t)
 {
-    double before = (double)NAN, apart = 0, most = 0;
+    double speed_before = (double)NAN, largest_change = 0, most = 0;
     for (size_t i = 0; i + 1 < m->count; i++) {
         const double h = m->of[TIME][i + 1] - m->of[TIME][i];
         const bool flight = m->of[CONTACT][i] == 0 && m->of[CONTACT][i + 1] == 0;
         if (m->of[TIME][i] <= t || !flight || h < spacing / 4) {
-            before = flight ? before : (double)NAN;
+            if (!flight) {
+                speed_before = (double)NAN;
+            }
             continue;
         }
         const double speed = (gap_to_face(m, i) - gap_to_face(m, i + 1)) / h;
         most = fmax(most, speed);
-        apart = fmax(apart, or_zero(fabs(speed - before)));
-        before = speed;
+        largest_change = fmax(largest_change, or_zero(fabs(speed - speed_before)));
+        speed_before = speed;
     }
-    return (largest){most, most + 2 * apart};
+    return (largest){most, most + 2 * largest_change};
 }
 
-// Numbers of the command and of the speeds.
+// What the summary says of the command, and of the speeds before and after first contact.
 static void check_law(rig *r, const motion *m, const touches *t)
 {
     // what was commanded; with a law only
@@ -319,11 +369,11 @@ static void check_law(rig *r, const motion *m, const touches *t)
                  peak = quantity(m, "peak_force_N");
     expect_near(r, "force_command_N", m->ends, quantity(m, "force_command_N"), wanted,
                 1e-9);
-    if (!isnan(peak) && commands_one_force(r)) {
+    if (!isnan(peak) && has_constant_command(r)) {
         expect_near(r, "force_over_command_N", 0, quantity(m, "force_over_command_N"),
                     peak - wanted, 1e-9);
     }
-    if (!isnan(t->first) && commands_one_force(r)) {
+    if (!isnan(t->first) && has_constant_command(r)) {
         expect_near(r, "steady_error_N", 0, quantity(m, "steady_error_N"),
                     quantity(m, "steady_force_N") - wanted, 1e-9);
     }
@@ -333,18 +383,26 @@ static void check_law(rig *r, const motion *m, const touches *t)
                 1e-9);
 
     // speeds
-    largest l = speed_towards(m, true, isnan(t->first) ? m->ends : t->first);
+    const double contact = isnan(t->first) ? m->ends : t->first;
+    largest l = speed_towards_wall(m, -(double)INFINITY, contact);
     expect(r, "approach_speed_m_s", 0, quantity(m, "approach_speed_m_s"), l.low - 1e-9,
            l.high + 1e-9);
     if (!isnan(t->first)) {
         const bool gives = !isnan(m->of[FACE_DEPTH][m->count - 1]);
-        l = gives ? speed_towards_face(m, t->first) : speed_towards(m, false, t->first);
+        if (gives) {
+            l = speed_towards_face(m, t->first);
+        } else {
+            l = speed_towards_wall(m, t->first, (double)INFINITY);
+        }
         const double said = or_zero(quantity(m, "return_speed_m_s"));
         expect(r, "return_speed_m_s", 0, said, fmax(0, l.low) - 1e-9,
                fmax(0, l.high) + 1e-9);
     }
 }
 
+// How deep the tip enters the wall: not at all if it is rigid, and else as deep as the
+// rows say, or deeper between two rows by the error of the gap there. The loss of the
+// wall is that of the last row.
 static void check_depth(rig *r, const motion *m)
 {
     const bool rigid = is(r, "wall.contact", "rigid");
@@ -364,19 +422,25 @@ static void check_depth(rig *r, const motion *m)
     }
 }
 
-// Impulses and losses of impacts on a wall at rest: those of events, of rows, and by the
-// formula.
+// Impulses and losses of impacts: the rows add up to what the events say, and on a wall
+// at rest the loss of an impact with the speed v and the impulse J is J (1 - e) v / 2
+// with the restitution e, which is 0 below the rest speed. Chatter, a series of impacts
+// taken as one event, has no such formula.
 static void check_impacts(rig *r, const motion *m)
 {
-    double impulses = 0, losses = 0, of_rows = 0, heaviest = 0;
+    double impulses = 0, losses = 0, impulses_of_rows = 0;
     const bool at_rest = is(r, "wall.motion", "none") && number(r, "wall.mass") == 0;
     const double rest_speed = number(r, "method.rest_speed");
+
+    // is there any chatter?
     bool chatter = false;
     for (size_t i = 0; i < impactlab_run_event_count(m->run); i++) {
         impactlab_event e;
         impactlab_run_event(m->run, i, &e);
         chatter = chatter || strcmp(e.kind, "chatter") == 0;
     }
+
+    // the events
     for (size_t i = 0; i < impactlab_run_event_count(m->run); i++) {
         impactlab_event e;
         impactlab_run_event(m->run, i, &e);
@@ -385,7 +449,6 @@ static void check_impacts(rig *r, const motion *m)
         }
         impulses += e.impulse;
         losses += e.loss;
-        heaviest = fmax(heaviest, e.impulse);
         if (at_rest && !chatter) {
             const double restitution =
                 e.speed < rest_speed ? 0 : number(r, "wall.restitution");
@@ -394,15 +457,19 @@ static void check_impacts(rig *r, const motion *m)
                         1e-9 * loss + 1e-15);
         }
     }
+
+    // the rows
     for (size_t i = 0; i < m->count; i++) {
-        of_rows += or_zero(m->of[IMPULSE][i]);
+        impulses_of_rows += or_zero(m->of[IMPULSE][i]);
     }
-    expect_near(r, "impulses of the rows", m->ends, of_rows, impulses,
+    expect_near(r, "impulses of the rows", m->ends, impulses_of_rows, impulses,
                 1e-12 * (1 + impulses));
     expect_near(r, "impact_loss", m->ends, m->of[IMPACT_LOSS][m->count - 1], losses,
                 1e-12 * (1 + losses));
 }
 
+// With the depth x and its rate v a Kelvin-Voigt wall pushes with k x + c v, a
+// Hunt-Crossley wall with x^n (k + c v).
 void check_contact_law(rig *r, const motion *m)
 {
     const bool linear = is(r, "wall.contact", "kelvin-voigt");
