@@ -11,7 +11,8 @@
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
 
-// Adds a spring between body k and the one before.
+// Adds a torsional spring between the bodies k - 1 and k to the stiffness matrix of n
+// angles: its energy is stiffness (q[k] - q[k - 1])^2 / 2.
 static void add_spring(int n, int k, double stiffness, double *matrix)
 {
     matrix[(k - 1) * n + k - 1] += stiffness;
@@ -24,8 +25,9 @@ void modes_matrices(const arm *a, double *mass, double *stiffness)
 {
     const int n = a->dof, N = a->links;
 
-    // straight, all cosines are 1: every link beyond the outer one counts whole, that one
-    // half
+    // In a straight arm all cosines are 1. The angles of links i < j couple by their
+    // lengths times the mass that both move: half of link j's own (its centre is halfway)
+    // and all of what lies beyond it.
     double beyond = a->tip_mass;
     for (int j = N - 1; j >= 0; j--) {
         const double l = arm_link_of(a, j).length, m = arm_link_of(a, j).mass;
@@ -47,7 +49,8 @@ void modes_matrices(const arm *a, double *mass, double *stiffness)
 
 // --- the sag of a tilted arm -----------------------------------------------------------
 
-// Angle of the line that a pinned tip stays on, and at which a hub is held [rad].
+// The angle of the unloaded straight arm [rad]: along the wall if the tip is pinned to
+// one, else the angle at which the hub is held.
 static double line_angle(const arm *a, tip_end tip)
 {
     const bool at_wall = tip == TIP_PINNED && wall_stands(&a->wall);
@@ -57,16 +60,19 @@ static double line_angle(const arm *a, tip_end tip)
     return a->held_angle;
 }
 
-// The balance of moments behind the hub at angles q[dof] under this share of the weight
-// and the tip's force: what it lacks into change[dof - 1], its derivatives into
-// matrix[size * size], both zeroed before. Of a pinned tip the last row and column are
-// the line's that it stays on.
+// Sets up a Newton step for the sag: the moments about each link's base at the angles
+// q[dof], of the joints, of `share` of the weight and of the force on a pinned tip.
+// Subtracts these moments from change[size] and adds their derivatives to
+// matrix[size * size]; the caller has zeroed both. If the tip is pinned, `size` is one
+// larger than the number of links' angles: the last equation keeps the tip on the wall's
+// line, and its unknown is the force.
 static void sag_equations(const arm *a, tip_end tip, const double *q, double force,
                           double share, int size, double *matrix, double *change)
 {
     const double line = line_angle(a, tip);
-    const int last = size - 1;
+    const int force_row = size - 1;
     for (int k = 1; k < a->dof; k++) {
+        // the link's lever arms along and across the line, and the torque of its joint
         const int own = k - 1, link = k - a->first;
         const double length = arm_link_of(a, link).length;
         const double weight = chain_weight(a, link) * share;
@@ -76,12 +82,12 @@ static void sag_equations(const arm *a, tip_end tip, const double *q, double for
         const joint_force joint =
             joint_forces(&constants, &a->amount, q[k] - q[k - 1], 0);
 
-        // the link's own balance
+        // the moments about the link's own base
         change[own] -= joint.torque + weight * inline_cos(q[k]) + force * reach;
         matrix[own * size + own] +=
             joint.by_bend - weight * inline_sin(q[k]) - force * aside;
 
-        // the joint's part in that of the body before
+        // the joint's reaction on the body before
         if (own > 0) {
             change[own - 1] += joint.torque;
             matrix[(own - 1) * size + own - 1] += joint.by_bend;
@@ -89,8 +95,8 @@ static void sag_equations(const arm *a, tip_end tip, const double *q, double for
             matrix[own * size + own - 1] -= joint.by_bend;
         }
         if (tip == TIP_PINNED) {
-            matrix[own * size + last] = matrix[last * size + own] = reach;
-            change[last] -= aside;
+            matrix[own * size + force_row] = matrix[force_row * size + own] = reach;
+            change[force_row] -= aside;
         }
     }
 }
@@ -100,6 +106,8 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
     enum { LOADS = 8, ITERATIONS = 40 };
     const int n = a->dof, size = n - 1 + (tip == TIP_PINNED ? 1 : 0);
     const size_t numbers = (size_t)(size * (size + 1));
+
+    // the straight arm, which is the answer where no weight bends it
     *force = 0;
     for (int k = 0; k < n; k++) {
         q[k] = line_angle(a, tip);
@@ -112,26 +120,26 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
         return STATUS_NO_MEMORY;
     }
 
-    // the weight comes on in portions, each by Newton's method in the angles behind the
-    // hub
-    double *change = matrix + size * size, most = 1;
+    // The weight is applied in LOADS equal portions; after each of them Newton's method
+    // finds the angles of the links, starting from those found before.
+    double *change = matrix + size * size, largest = 1;
     bool found = true;
     for (int load = 1; load <= LOADS && found; load++) {
-        most = 1;
-        for (int i = 0; i < ITERATIONS && found && most > 1e-13; i++) {
+        largest = 1;
+        for (int i = 0; i < ITERATIONS && found && largest > 1e-13; i++) {
             memset(matrix, 0, numbers * sizeof *matrix);
             sag_equations(a, tip, q, *force, (double)load / LOADS, size, matrix, change);
             found = dense_solve(size, matrix, change);
-            most = 0;
+            largest = 0;
             for (int k = 1; k < n && found; k++) {
                 q[k] += change[k - 1];
-                most = fmax(most, fabs(change[k - 1]));
+                largest = fmax(largest, fabs(change[k - 1]));
             }
             if (tip == TIP_PINNED) {
                 *force += change[size - 1];
             }
         }
-        found = found && most < 1e-9;
+        found = found && largest < 1e-9;
     }
     free(matrix);
     if (found) {
@@ -140,8 +148,9 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
     return STATUS_SINGULAR;
 }
 
-// M and K about the sag from those of the straight arm; constraint[n] gets what a pinned
-// tip lets the angles do, sum of constraint x = 0.
+// Turns the matrices M and K of the straight arm into those of small motions about the
+// angles q at which it sags. constraint[n] gets the coefficients of the condition that a
+// pinned tip puts on these motions x: the sum of constraint[k] x[k] is zero.
 static status add_sag(const arm *a, tip_end tip, double *q, double *mass,
                       double *stiffness, double *constraint)
 {
@@ -149,12 +158,15 @@ static status add_sag(const arm *a, tip_end tip, double *q, double *mass,
     double force;
     const status code = modes_sag(a, tip, q, &force);
     for (int k = a->first; k < n && code == STATUS_OK; k++) {
+        // inertia couples two links by the cosine of the angle between them
         const int link = k - a->first;
         const double l = arm_link_of(a, link).length, turned = q[k] - line_angle(a, tip);
         constraint[k] = l * inline_cos(turned);
         for (int j = a->first; j < n; j++) {
             mass[k * n + j] *= inline_cos(q[k] - q[j]);
         }
+
+        // the weight and the tip's force stiffen or soften, and so does a bent spring
         stiffness[k * n + k] -=
             chain_weight(a, link) * inline_sin(q[k]) + force * l * inline_sin(turned);
         if (k > 0) {
@@ -167,19 +179,21 @@ static status add_sag(const arm *a, tip_end tip, double *q, double *mass,
     return code;
 }
 
-// Basis of the angles that hub and tip allow, one column after another; returns how many.
+// Finds a basis of the motions that the ends of the arm allow: column after column of dof
+// angles, one for each angle that is free to move. Returns the number of columns.
 static int allowed_basis(const arm *a, hub_end hub, tip_end tip, const double *constraint,
                          double *basis)
 {
     const int n = a->dof, start = hub == HUB_LOCKED ? 1 : 0;
     int columns = 0;
     for (int k = start; k < n; k++) {
+        // with a pinned tip the last link's angle follows from those of the others
         bool link = k >= a->first;
         if (tip == TIP_PINNED && link && k == n - 1) {
-            break; // the last angle follows from the others
+            break;
         }
 
-        // a pinned tip moves the last link against each of the others, by their lengths
+        // it turns against each of them, so that the tip stays in place
         basis[columns * n + k] = 1;
         if (tip == TIP_PINNED && link) {
             basis[columns * n + n - 1] = -constraint[k] / constraint[n - 1];
@@ -189,7 +203,8 @@ static int allowed_basis(const arm *a, hub_end hub, tip_end tip, const double *c
     return columns;
 }
 
-// reduced = basis^T matrix basis
+// Computes reduced = basis^T matrix basis, of columns^2 numbers, from a symmetric matrix
+// of n^2; product[n] is scratch.
 static void project_onto_basis(const double *matrix, const double *basis, int n,
                                int columns, double *product, double *reduced)
 {
@@ -245,7 +260,7 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count,
 
     // frequencies, and shapes scaled to a largest angle of one
     for (int i = 0; found && i < columns; i++) {
-        // a rigid mode's zero comes out as rounding of the stiffest mode's square
+        // the zero of a rigid mode comes out as a rounding error of the largest value
         double value = values[i] > 1e-13 * values[columns - 1] ? values[i] : 0;
         frequencies[i] = sqrt(value);
 
@@ -275,28 +290,32 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count,
 
 enum { MOST_BODIES = PARAMETER_LIST_MOST + 1 };
 
-// K^(-1/2) M K^(-1/2) in the bends of the joints, the sum of which up to its own is the
-// angle of a body behind the first.
+// Computes K^(-1/2) S K^(-1/2), of (dof - 1)^2 numbers, in the coordinates of the joints'
+// bends, while the first body is held. The angle of body i is the sum of the bends of
+// joints 1 to i. So K is diagonal, with the joints' stiffnesses, and the mass matrix S in
+// these coordinates sums the mass matrix M of the angles over all bodies farther out:
+//
+//   S(i, j) = sum of M(r, s) over r >= i, s >= j
+//           = M(i, j) + S(i+1, j) + S(i, j+1) - S(i+1, j+1)
 static void scaled_mass(const arm *a, double *scaled)
 {
-    enum { EDGE = MOST_BODIES + 1 };
+    enum { WIDTH = MOST_BODIES + 1 };
     double mass[MOST_BODIES * MOST_BODIES] = {0},
                               stiffness[MOST_BODIES * MOST_BODIES] = {0};
-    double common[EDGE * EDGE] = {0}; // with a row and a column of zeros behind the last
+    double sum[WIDTH][WIDTH] = {0}; // S, with a row and a column of zeros after the last
     const int n = a->dof, size = n - 1;
     assert(n <= (int)MOST_BODIES);
     modes_matrices(a, mass, stiffness);
 
-    // what the bodies from i and from j on have in common, less the roots of both
-    // stiffnesses
+    // from the tip inwards, each element divided by the square roots of the stiffnesses
+    // of its two joints
     for (int i = n - 1; i >= 1; i--) {
         for (int j = n - 1; j >= 1; j--) {
-            double *here = common + i * EDGE + j;
-            const double below = here[EDGE], right = here[1], both = here[EDGE + 1];
-            *here = mass[i * n + j] + (below + right - both);
-            const double own = arm_link_of(a, i - a->first).stiffness;
-            const double other = arm_link_of(a, j - a->first).stiffness;
-            scaled[(i - 1) * size + j - 1] = *here / sqrt(own * other);
+            sum[i][j] =
+                mass[i * n + j] + (sum[i + 1][j] + sum[i][j + 1] - sum[i + 1][j + 1]);
+            const double stiffness_i = arm_link_of(a, i - a->first).stiffness;
+            const double stiffness_j = arm_link_of(a, j - a->first).stiffness;
+            scaled[(i - 1) * size + j - 1] = sum[i][j] / sqrt(stiffness_i * stiffness_j);
         }
     }
 }
@@ -311,13 +330,16 @@ int modal_damping_rows(const arm *a, const char *ratios,
         return 0;
     }
 
-    // the slowest mode has the largest value
+    // the modes of K^(-1/2) S K^(-1/2): values ascend, and the largest is 1 / omega^2 of
+    // the slowest mode
     assert(count <= size && count <= PARAMETER_MODES_MOST &&
            a->links <= PARAMETER_LIST_MOST);
     scaled_mass(a, scaled);
     const bool found = symmetric_eigen(size, scaled, values, scratch);
     assert(found);
     (void)found;
+
+    // a row is the mode's shape in the bends, scaled to damp that mode by its ratio
     for (int i = 0; i < count; i++) {
         const double *y = scaled + (size - 1 - i) * size;
         const double factor = sqrt(2 * ratio[i] * sqrt(values[size - 1 - i]));

@@ -214,7 +214,8 @@ double wall_face_energy(const wall_model *w, wall_face face);
 // at rest or at a constant rate.
 double wall_face_rate(const wall_model *w, wall_face face);
 
-// How long that motion stays analytic [s]: that of Hunt and Crossley's wall ends at rest.
+// How long the motion of a swinging face stays analytic [s]: on a wall of Hunt and
+// Crossley it does so until the face comes to rest.
 double wall_face_lasts(const wall_model *w, wall_face face);
 
 // Place of the contact point in a frame with direction (c, s) through the hub's axis:

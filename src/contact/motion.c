@@ -53,7 +53,8 @@ void motion_evaluate(const arm *a, motion *m, double *state)
     state[SLOT_WALL_POWER] = r.wall_power;
     state[SLOT_WALL_WORK] = r.wall_work;
 
-    // the wall's face goes with the arm in contact, else the gap is that to it
+    // In contact the wall's face moves with the arm. A face that swings by itself is not
+    // where the wall stands at rest: the gap is that to the face.
     if (mode.contact && !motion_wall_is_rigid(m)) {
         state[SLOT_FACE] = -r.gap;
         state[SLOT_FACE_VELOCITY] = -r.gap_velocity;
@@ -84,9 +85,9 @@ force_bounds motion_force_bounds(const arm *a, const motion *m, double *state)
     const contact_state now = contact_state_of(state);
     const bool single =
         m->dof == 1 && !m->wall_moves && wall_stands(&a->wall) && motion_wall_is_rigid(m);
-    const bool near = state[SLOT_GAP] <= RESTING_GAP && now.friction == HUB_STICK;
+    const bool held_near = state[SLOT_GAP] <= RESTING_GAP && now.friction == HUB_STICK;
     const bool rests =
-        single && state_velocities(m, state)[0] == 0 && (now.contact || near);
+        single && state_velocities(m, state)[0] == 0 && (now.contact || held_near);
     if (rests) {
         return motion_held_forces(a, m, state);
     }
@@ -124,21 +125,21 @@ double motion_wall_rounding(const arm *a, const motion *m)
 
 void motion_gap_edges(const arm *a, const motion *m, double limits[3])
 {
-    // a rounding error of the force accelerates a face by that error over its mass, and
-    // so does that of its spring, by the face's place; one without a mass returns at a
-    // rate that has the error of the place where it was left
+    // Rounding errors of the contact force, and of the face's spring force, accelerate a
+    // face by that error divided by its mass. A face without a mass returns at a rate
+    // times its place, and so carries the rounding error of the place where it was left.
     const bool returns = m->wall_gives && state_face_swings(m, m->state);
-    double rate = 0, yields = 0;
+    double rate = 0, inverse_mass = 0;
     if (returns) {
         rate = wall_face_rate(&a->wall, state_face(m->state));
     }
     if (m->wall_has_face) {
-        yields = 1 / a->wall.face_mass;
+        inverse_mass = 1 / a->wall.face_mass;
     }
     limits[0] = EDGE_GAP;
     limits[1] = EDGE_RATE + EDGE_PLACE * rate;
-    limits[2] = EDGE_RATE * (motion_rounding(a, m) + yields) + EDGE_PLACE * rate * rate +
-                yields * motion_face_rounding(a, m);
+    limits[2] = EDGE_RATE * (motion_rounding(a, m) + inverse_mass) +
+                EDGE_PLACE * rate * rate + inverse_mass * motion_face_rounding(a, m);
     limits[2] = fmax(EDGE_MORE, limits[2]);
 }
 
@@ -185,7 +186,7 @@ static double fastest_wall_rate(const arm *a, motion *m, double *state)
 
 double motion_vibration(const arm *a, motion *m, double *state)
 {
-    // most have nothing but their own
+    // most arms have no rates but those of their joints
     if (motion_wall_is_rigid(m) && a->amount.stiffening == 0 &&
         a->motor.inductance == 0) {
         return a->highest_frequency;
@@ -195,11 +196,12 @@ double motion_vibration(const arm *a, motion *m, double *state)
     if (a->motor.inductance > 0) {
         current = a->motor.resistance / a->motor.inductance;
     }
-    const double own = a->highest_frequency * chain_stiffened(a, state_angles(m, state));
+    const double arm_rate =
+        a->highest_frequency * chain_stiffened(a, state_angles(m, state));
     if (wall > 0 || current > 0) {
-        return sqrt(own * own + wall * wall + current * current);
+        return sqrt(arm_rate * arm_rate + wall * wall + current * current);
     }
-    return own;
+    return arm_rate;
 }
 
 state_energy motion_energy(const arm *a, const motion *m, double *state)
@@ -243,17 +245,20 @@ bool motion_project(const arm *a, motion *m, double *state)
     return true;
 }
 
-// The parts of a state, `h` after another one, that need no evaluation.
+// Sets the parts of a state that need no evaluation, from those of the state `from`, a
+// time h earlier: the slots, the quadratures that stay the same, and the place and
+// velocity of a wall's face that swings by itself.
 static void set_slots(const arm *a, const motion *m, double *from, double h,
                       double *state)
 {
-    static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR,
-                               QUADRATURE_PUSHED};
+    static const int unchanged[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR,
+                                    QUADRATURE_PUSHED};
     memcpy(state, from, SLOT_COUNT * sizeof(double));
     state[SLOT_TIME] += h;
     state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;
-    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
-        state_quadratures(m, state)[kept[i]] = state_quadratures(m, from)[kept[i]];
+    for (size_t i = 0; i < sizeof unchanged / sizeof *unchanged; i++) {
+        const int quadrature = unchanged[i];
+        state_quadratures(m, state)[quadrature] = state_quadratures(m, from)[quadrature];
     }
     if (state_face_swings(m, from)) {
         const wall_model wall = wall_at(&a->wall, from[SLOT_TIME]);
@@ -263,9 +268,13 @@ static void set_slots(const arm *a, const motion *m, double *from, double h,
     }
 }
 
-// Updates the energy ledger of an evaluated state from that of an earlier one.
-static void book(const arm *a, const motion *m, double *from, double *state)
+// Adds to the energy ledger of an evaluated state what happened since an earlier state
+// `from`: the work of motor and friction on the hub, and the work and losses of a wall's
+// face that swings by itself.
+static void update_energy_ledger(const arm *a, const motion *m, double *from,
+                                 double *state)
 {
+    // the face loses what its energy and the work on it do not account for
     if (state_face_swings(m, from)) {
         const wall_model wall = wall_at(&a->wall, from[SLOT_TIME]);
         const double work =
@@ -274,11 +283,15 @@ static void book(const arm *a, const motion *m, double *from, double *state)
         state_quadratures(m, state)[QUADRATURE_WALL] +=
             motion_wall_energy(a, m, from) + work - motion_wall_energy(a, m, state);
     }
+
+    // constant torques on the hub work by the angle it turned
     const double turned = state_angles(m, state)[0] - state_angles(m, from)[0];
     state[SLOT_MOTOR_WORK] += a->motor.torque * turned;
     state[SLOT_FRICTION_LOSS] += state[SLOT_FRICTION] * a->motor.stiction * turned;
 }
 
+// Whether contact force, angles and velocities of a state are numbers: their sum is not
+// finite if one of them is not.
 static bool is_finite(const motion *m, double *state)
 {
     double sum = state[SLOT_FORCE];
@@ -292,18 +305,20 @@ status motion_try_step(const arm *a, motion *m, double h, state_extent extent)
 {
     double *trial = m->trial;
     m->step.trial_energy = unknown_energy;
-    if (motion_held_still(m)) { // only time passes
+
+    // in an arm that is held still only time passes
+    if (motion_held_still(m)) {
         memcpy(trial, m->state, (size_t)m->size * sizeof *trial);
         trial[SLOT_TIME] += h;
         state_quadratures(m, trial)[QUADRATURE_FORCE] += h * m->state[SLOT_FORCE];
         return STATUS_OK;
     }
 
+    // the engine's state at h; its ledger, unless the engine keeps one of its own
     set_slots(a, m, m->state, h, trial);
     TRY(m->engine->state_at(a, m, h, extent));
-
     if (m->engine->kept == 0) {
-        book(a, m, m->state, trial);
+        update_energy_ledger(a, m, m->state, trial);
     }
     if (is_finite(m, trial)) {
         return STATUS_OK;
@@ -316,10 +331,11 @@ bool motion_between_all(const arm *a, motion *m, const double *times, int count,
 {
     assert(count >= 1 && count <= MOTION_TOGETHER);
     double *start = m->trial, *states[MOTION_TOGETHER], h[MOTION_TOGETHER];
-    if (m->engine->states_at == NULL || state_is_held_still(m, start) || count < 1) {
+    if (m->engine->states_at == NULL || state_is_held_still(m, start)) {
         return false;
     }
 
+    // the engine evaluates all states together, from the step's start
     for (int i = 0; i < count; i++) {
         states[i] = m->between + i * m->size;
         h[i] = times[i] - start[SLOT_TIME];
@@ -327,9 +343,10 @@ bool motion_between_all(const arm *a, motion *m, const double *times, int count,
     }
     m->engine->states_at(a, m, h, count, states, energies);
 
+    // each gets its ledger and its time to the last bit
     bool finite = true;
     for (int i = 0; i < count; i++) {
-        book(a, m, start, states[i]);
+        update_energy_ledger(a, m, start, states[i]);
         states[i][SLOT_TIME] = times[i];
         finite = finite && is_finite(m, states[i]);
     }

@@ -316,8 +316,9 @@ static inline value_and_slope motion_output(const arm *a, motion *m, output_quan
 
 // Computes the states at `count` instants [s], at most MOTION_TOGETHER, within the step
 // just made, which left its start in m->trial: one after the other into m->between, and
-// the energy of each. False if the engine cannot; then motion_between of
-// contact_machine.h gives them one by one.
+// the energy of each. False if the engine has no states_at, if the arm was held still
+// during the step, or if a state is not finite: then motion_between of contact_machine.h
+// gives them one by one.
 bool motion_between_all(const arm *a, motion *m, const double *times, int count,
                         state_energy *energies);
 

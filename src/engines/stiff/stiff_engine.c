@@ -19,37 +19,42 @@
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/engines/stiff/stiff_integrator.h"
 
-// beyond it, where nothing else is faster, the tolerance is larger [1/s]
+// a decay faster than this, and than all else in the arm, gets a larger tolerance [1/s]
 #define FAST_DECAY 3e4
-#define DECAYING   10  // so many times
-#define BOUNCING   0.1 // and of an arm that bounces undamped, which amplifies errors
-// of a wall that moves: errors of the work of its many contacts add up
+// factors of the tolerance: for such a decay; for an arm that bounces undamped, which
+// amplifies errors; and for a wall that moves, the work of whose many contacts adds up
+#define DECAYING     10
+#define BOUNCING     0.1
 #define DRIVEN       0.1
 #define TINY_ENERGY  1e-30 // [J]
-#define LONGEST_TURN 0.25  // in a step, of the way to a fold
-#define FIRST_PHASE  0.1   // of the fastest change, in the first step of a motion
-#define LEAST_FIRST  1e-6  // length of that [s]
+#define LONGEST_TURN 0.25  // of a link in a step, as a share of its way to a fold
+#define FIRST_PHASE  0.1   // of the fastest change, in the first step after an event
+#define LEAST_FIRST  1e-6  // least and greatest length of that step [s]
 #define MOST_FIRST   1e-3
-#define SAFETY       0.85  // share that is taken of what the error allows
-#define LEAST_LEFT   1e-13 // share of a step that is continued
-#define SHORTEST     1e-15 // step that can be made [s]
-#define MOST_GROWTH  10
-// step; what is read of a part of one rounds as the whole does [s]
+// a step that so many times its length would bring to the next change ends there
+#define NEARLY_DUE  1.0001
+#define SAFETY      0.85  // share that is taken of what the error allows
+#define LEAST_LEFT  1e-13 // share of a step that is continued
+#define SHORTEST    1e-15 // step that can be made [s]
+#define MOST_GROWTH 10
+// longest step: what is read within a step has the rounding errors of all of it [s]
 #define LONGEST 1
-// what the motor does in this turn is the least energy of a scale [rad]
+// the motor's work over this turn is the least energy that errors are measured by [rad]
 #define LEAST_TURN   1e-2
 #define AT_EVENT     1e-6  // share of a step by which it may miss its event
 #define SAME_INSTANT 1e-14 // [s]
 #define FACE_PHASE   1.5   // of a face that swings, in a step
-// of a wall that moves: where it leads all that can move, no error shows
+// of a wall that moves, in a step: an arm that the wall moves entirely shows no error
 #define WALL_PHASE 0.4
 
 enum { MOST_ATTEMPTS = 100, MOST_ENDS = 10 };
 
 // --- how long a step is ----------------------------------------------------------------
 
-// How the event function of the step's end, which is `at` its event, differs from zero,
-// as a time.
+// By how much the step's end misses the event that it was cut to [s], by one step of
+// Newton's method: the value of the event function at the end, over the rate at which it
+// falls there. Where the state at the end has the value itself, without the rounding of
+// the polynomials, that is taken. 0 where the function does not fall.
 static double miss_of(const stiff_integrator *s, const arm *a, const motion *m,
                       event_function w)
 {
@@ -58,20 +63,18 @@ static double miss_of(const stiff_integrator *s, const arm *a, const motion *m,
     const double h = s->step.length;
     double value = g.value;
     double slope = g.slope / h;
+
+    // the force, the gap or in contact the depth, the hub's velocity, friction's reserve
     if (w == EVENT_OF_FORCE && !s->divided[w] && end[SLOT_CONTACT] != 0 &&
         (!m->wall_gives || a->wall.law == WALL_KELVIN_VOIGT)) {
         value = end[SLOT_FORCE];
     } else if (w == EVENT_OF_GAP && s->kept[STIFF_GAP] == 0) {
         const bool within = m->wall_gives && end[SLOT_CONTACT] != 0;
+        value = end[SLOT_GAP];
+        slope = end[SLOT_GAP_VELOCITY];
         if (within) {
-            value = -end[SLOT_GAP];
-        } else {
-            value = end[SLOT_GAP];
-        }
-        if (within) {
-            slope = -end[SLOT_GAP_VELOCITY];
-        } else {
-            slope = end[SLOT_GAP_VELOCITY];
+            value = -value;
+            slope = -slope;
         }
     } else if (w == EVENT_OF_HUB) {
         value = end[SLOT_FRICTION] * state_velocities(m, s->end)[0];
@@ -92,7 +95,8 @@ static void evaluate_end(stiff_integrator *s, const arm *a, motion *m)
     stiff_state_within(s, a, m, s->kept[KEPT_LENGTH], s->end);
 }
 
-// Works out what the solved stages come to.
+// Turns the solved stages into a step: keeps their polynomials, makes the event functions
+// of the step, and evaluates the state at its end. False if a link turns too far in it.
 static bool take_stages(stiff_integrator *s, const arm *a, motion *m)
 {
     if (!s->loops->residual(&s->step, true)) {
@@ -106,8 +110,8 @@ static bool take_stages(stiff_integrator *s, const arm *a, motion *m)
     return true;
 }
 
-// Where the first event function other than `passed` falls below zero in the step, if one
-// does.
+// The instant of the step at which the first event function other than `passed` falls
+// below zero; the step's end, without an event, if none does.
 static step_end another_event(stiff_integrator *s, const arm *a, motion *m,
                               event_function passed)
 {
@@ -118,26 +122,31 @@ static step_end another_event(stiff_integrator *s, const arm *a, motion *m,
     return end;
 }
 
-// Takes the step again up to an event within it, until it ends there: no longer than its
-// error allows, and at another event where the first moves to beyond that one. An event
-// that moves out of the step was one of rounding, and does not end it.
+// Takes the step again, cut to the event `at` within it, until it ends where the event
+// is. Every attempt moves the event a little, because the polynomials of a shorter step
+// differ; if it moves beyond another event, the step ends at that other one. The step
+// never becomes longer than its error allows: an event that moves out of it was due to
+// rounding, and is dropped. False if no stages are found.
 static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end at)
 {
     const double allowed = s->step.length;
     double ratio = at.length / allowed, rate = 0.5;
     for (int i = 0; i < MOST_ENDS; i++) {
+        // an event right at the start leaves no step to take
         const double h = s->step.length * ratio;
-        if (!(h > SHORTEST)) { // at once
+        if (!(h > SHORTEST)) {
             s->kept[KEPT_LENGTH] = larger(h, DBL_MIN);
             evaluate_end(s, a, m);
             break;
         }
         s->step.length = h;
 
-        // stages that are not found: without the course of the step before, then shorter
+        // the stages, predicted from those of the attempt before
         if (!stiff_solve_stages(s, false, 0, ratio, &rate) || !take_stages(s, a, m)) {
             return false;
         }
+
+        // how far the end is from the event, or from another one that comes before it
         double miss = miss_of(s, a, m, at.first);
         step_end other = {0};
         if (h > at.length * (1 + AT_EVENT)) {
@@ -147,14 +156,18 @@ static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end 
             at = other;
             miss = at.length - h;
         }
+
+        // near enough; the polynomials give the rest
         if (fabs(miss) <= AT_EVENT * h || fabs(miss) < SAME_INSTANT) {
             s->kept[KEPT_LENGTH] = h + miss;
             evaluate_end(s, a, m);
             break;
         }
         if (miss > 0 && h >= allowed) {
-            return true;
+            return true; // the event lies outside the step
         }
+
+        // the next attempt ends where this one expects the event
         ratio = smaller(larger(1 + miss / h, 0.5), 1.5);
         ratio = smaller(ratio, larger(allowed / h, 1));
     }
@@ -162,68 +175,107 @@ static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end 
     return true;
 }
 
-// How long the first try of a step is, given what the state keeps of the one before.
-static double first_try(const arm *a, motion *m, bool fresh)
+// The length of a step just after an event [s]: that which the last such step could have
+// had, or a small share of the period of the arm's fastest change, if that is longer.
+static double length_after_event(const arm *a, motion *m)
+{
+    const double learned = state_kept(m, m->state)[STIFF_LEARNED];
+    const double rate = larger(a->fastest_decay, motion_vibration(a, m, m->state));
+    const double by_rate = smaller(larger(FIRST_PHASE / rate, LEAST_FIRST), MOST_FIRST);
+    return larger(learned, by_rate);
+}
+
+// Cuts a step of length h to where torque or arm will change next, if they keep changing
+// at the interval of the last two changes. If two steps would reach beyond that instant,
+// both get half of the time that is left, so that the second is not a very short one.
+static double cut_to_next_change(motion *m, double h)
 {
     const double *kept = state_kept(m, m->state);
-    double h = kept[STIFF_NEXT];
-    if (fresh) { // as long as the last one after an event could be, or slow arms have it
-        const double rate = larger(a->fastest_decay, motion_vibration(a, m, m->state));
-        const double slow = smaller(larger(FIRST_PHASE / rate, LEAST_FIRST), MOST_FIRST);
-        h = larger(kept[STIFF_LEARNED], slow);
-    }
-
-    // not beyond where the next change is due, and no scraps before it
     const double due = kept[KEPT_CHANGED] + kept[KEPT_INTERVAL] - m->state[SLOT_TIME];
-    if (kept[KEPT_INTERVAL] > 0 && due > SAME_INSTANT) {
-        if (h * 1.0001 > due) {
-            h = due;
-        } else if (2 * h > due) {
-            h = 0.5 * due;
-        }
+    const bool comes = kept[KEPT_INTERVAL] > 0 && due > SAME_INSTANT;
+    if (!comes) {
+        return h;
     }
-    if (state_face_swings(m, m->state)) {
-        const wall_face face = state_face(m->state);
-        const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
-        const double rate = wall_face_rate(&wall, face);
-        if (rate > 0) {
-            h = smaller(h, FACE_PHASE / rate);
-        }
-        h = smaller(h, wall_face_lasts(&a->wall, face));
+    if (h * NEARLY_DUE > due) {
+        return due;
     }
-    if (m->wall_moves) {
-        const double rate = wall_motion_rate(&a->wall.motion, m->state[SLOT_TIME]);
-        if (rate > 0) {
-            h = smaller(h, WALL_PHASE / rate);
-        }
-        h = smaller(h, wall_motion_lasts(&a->wall.motion, m->state[SLOT_TIME]));
+    if (2 * h > due) {
+        return 0.5 * due;
     }
     return h;
 }
 
-// How far the links turn in a step on a rigid flat wall, in shares of what a step may
-// take of the way to a fold over the hub's axis. There the force has a pole that does not
-// show in the velocities.
+// Cuts a step of length h to a small phase of the wall's face that swings by itself, and
+// to the instant at which its law of motion ends.
+static double cut_by_face(const arm *a, motion *m, double h)
+{
+    const wall_face face = state_face(m->state);
+    const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
+    const double rate = wall_face_rate(&wall, face);
+    if (rate > 0) {
+        h = smaller(h, FACE_PHASE / rate);
+    }
+    return smaller(h, wall_face_lasts(&a->wall, face));
+}
+
+// Cuts a step of length h to a small phase of the wall's own motion, and to the instant
+// at which the formula of that motion changes.
+static double cut_by_wall_motion(const arm *a, motion *m, double h)
+{
+    const double rate = wall_motion_rate(&a->wall.motion, m->state[SLOT_TIME]);
+    if (rate > 0) {
+        h = smaller(h, WALL_PHASE / rate);
+    }
+    return smaller(h, wall_motion_lasts(&a->wall.motion, m->state[SLOT_TIME]));
+}
+
+// The length that a step is first tried with [s]: what the error of the step before
+// allows or, just after an event, length_after_event, cut by all that the error does not
+// see.
+static double first_length(const arm *a, motion *m, bool after_event)
+{
+    double h = state_kept(m, m->state)[STIFF_NEXT];
+    if (after_event) {
+        h = length_after_event(a, m);
+    }
+    h = cut_to_next_change(m, h);
+    if (state_face_swings(m, m->state)) {
+        h = cut_by_face(a, m, h);
+    }
+    if (m->wall_moves) {
+        h = cut_by_wall_motion(a, m, h);
+    }
+    return h;
+}
+
+// How far the links of an arm on a rigid flat wall turn in the step, relative to what is
+// allowed: LONGEST_TURN of the way that is left to a fold, where all links stand across
+// the wall. There the contact force has a pole, which the velocities do not show. The way
+// left is estimated by the largest cosine of the angles between links and wall.
 static double turn_to_fold(const stiff_integrator *s, const arm *a)
 {
     const stiff_step *p = &s->step;
     if (p->contact != STIFF_RIGID || a->wall.kind != WALL_PLANE || p->links < 2) {
         return 0;
     }
+
+    // the largest turn of any link at any stage, and the way left to the fold
     double turn = 0, left = 0;
     for (int k = 0; k < p->links; k++) {
         const stiff_link *l = &p->link[k];
         const double q0 = p->q0[p->first + k];
         left = larger(fabs(l->cosine * a->wall.cosine + l->sine * a->wall.sine), left);
         for (int i = 0; i < RADAU_STAGES; i++) {
-            turn = larger(fabs(p->stage[p->first + k].q[i / 4][i % 4] - q0), turn);
+            const double q = p->stage[p->first + k].q[i / 4][i % 4];
+            turn = larger(fabs(q - q0), turn);
         }
     }
     return turn / (LONGEST_TURN * left);
 }
 
-// Where the step before ended at the drive's limit, or left it, the other of its
-// equations holds, whatever the current's last digits say.
+// Changes the equation of an electric drive where the step before ended because the
+// current reached its limit or left it: from limited to unlimited or back. The current
+// itself cannot tell which holds, as it is at the limit but for rounding.
 static void change_drive(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *before = state_kept(m, m->state);
@@ -234,6 +286,8 @@ static void change_drive(stiff_integrator *s, const arm *a, motion *m)
     if (!s->turned) {
         return;
     }
+
+    // through an inductance the current flows on from the limit, else it follows at once
     const bool flows = a->motor.inductance > 0;
     const bool was_limited = (int)before[STIFF_DRIVE] == STIFF_LIMITED;
     if (!was_limited) {
@@ -248,7 +302,8 @@ static void change_drive(stiff_integrator *s, const arm *a, motion *m)
     }
 }
 
-// The error that a step of this arm may have, as a share of the momentum.
+// The error that a step of this arm may have, as a share of the largest momentum
+// (scale_of).
 static double tolerance_of(const arm *a, const motion *m)
 {
     double current = 0;
@@ -259,6 +314,8 @@ static double tolerance_of(const arm *a, const motion *m)
     const bool decays = a->fastest_decay > others;
     const bool bounces =
         a->wall.restitution > 0 && a->fastest_decay <= a->highest_frequency;
+
+    // smaller on a wall that moves, larger for fast decays, smaller for lasting bounces
     double tolerance = m->tolerance;
     if (m->wall_moves) {
         tolerance *= DRIVEN;
@@ -272,8 +329,10 @@ static double tolerance_of(const arm *a, const motion *m)
     return tolerance;
 }
 
-// What errors of this step are a share of: the largest momentum so far. The least is what
-// the motor's torque makes of the arm in a small turn.
+// The scale that errors of this step are measured by: the largest momentum so far, whose
+// value up to the step before is `before`. The momentum is the root of twice the kinetic
+// energy; it counts as at least what the motor's work in a small turn, and the energy in
+// the springs, would give the arm.
 static double scale_of(const stiff_integrator *s, const arm *a, motion *m, double before)
 {
     const motor_model *motor = &a->motor;
@@ -282,13 +341,16 @@ static double scale_of(const stiff_integrator *s, const arm *a, motion *m, doubl
         torque =
             motor->torque_constant * motor->gain * motor->voltage / motor->resistance;
     }
+
+    // the larger of the three
     const double driven = fabs(torque) * LEAST_TURN + TINY_ENERGY;
     const double least =
         sqrt(2 * (driven + chain_strain_energy(a, state_angles(m, m->state))));
     return larger(larger(before, least), stiff_momentum(s, s->step.w0));
 }
 
-// Puts what holds at the step's start into what is kept.
+// Writes the values at the step's start into s->kept, which later goes into the state:
+// they are what the step's polynomials are added to.
 static void keep_start(stiff_integrator *s, motion *m, double scale)
 {
     double *kept = s->kept, *state = m->state;
@@ -307,21 +369,29 @@ static void keep_start(stiff_integrator *s, motion *m, double scale)
     kept[STIFF_QUADRATURES + QUADRATURE_CURRENT] = s->step.current0;
 }
 
-// Solves a step's stages, as long a step as its error allows. False if there is none.
+// Finds a step whose error is within the tolerance and solves its stages: tries shorter
+// and shorter lengths from first_length on. The error e of a step of length h grows as
+// h^(RADAU_STAGES + 1), so that h e^(-1 / (RADAU_STAGES + 1)) is what would just be
+// allowed. False if no step is found.
 static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
 {
+    // where in the step before this one starts; after an event that step says nothing
     const double *before = state_kept(m, m->state);
-    const double was = before[STIFF_LENGTH];
-    const double offset = was > 0 ? before[KEPT_USED] / was : 0;
+    const double length_before = before[STIFF_LENGTH];
+    const double offset = length_before > 0 ? before[KEPT_USED] / length_before : 0;
     const bool jumped = m->state[SLOT_JUMPED] != 0;
-    const bool begins = !(was > 0) || (jumped && before[STIFF_EVENT] != 0);
+    const bool after_event = !(length_before > 0) || (jumped && before[STIFF_EVENT] != 0);
+
+    // the first length, and the rate at which the iterations are expected to converge
     const double scale = s->kept[STIFF_SCALE];
-    double h = first_try(a, m, begins);
-    double rate = begins ? 0.5 : before[STIFF_RATE];
-    bool fresh = begins, again = false;
+    double h = first_length(a, m, after_event);
+    double rate = after_event ? 0.5 : before[STIFF_RATE];
+    bool fresh = after_event, again = false;
     for (int i = 0; i < MOST_ATTEMPTS && h > SHORTEST; i++, again = true) {
+        // stages that are not found: without the prediction from the step before, then
+        // shorter
         s->step.length = h;
-        if (!stiff_solve_stages(s, fresh, offset, h / was, &rate)) {
+        if (!stiff_solve_stages(s, fresh, offset, h / length_before, &rate)) {
             if (fresh) {
                 h = h / 3;
             }
@@ -336,9 +406,9 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
             continue;
         }
 
-        // a decay that is over within the step is no error
+        // a decay that ends within the step is taken out of the error
         double error = stiff_error(s, false) / (s->tolerance * scale);
-        if (error > 1 && (begins || again)) {
+        if (error > 1 && (after_event || again)) {
             error = stiff_error(s, true) / (s->tolerance * scale);
         }
         const double grow = SAFETY * plain_pow(error + 1e-30, -1.0 / (RADAU_STAGES + 1));
@@ -351,7 +421,7 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
             }
             s->kept[STIFF_RATE] = rate;
             s->kept[STIFF_NEXT] = smaller(h * smaller(most, grow), LONGEST);
-            if (begins) {
+            if (after_event) {
                 s->kept[STIFF_LEARNED] = s->kept[STIFF_NEXT];
             }
             return true;
@@ -365,6 +435,7 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
 // if none can be made.
 static bool make_stiff_step(stiff_integrator *s, const arm *a, motion *m)
 {
+    // the equations, and the values at the step's start
     stiff_set_arm(s, a, m);
     stiff_set_start(s, m);
     s->tolerance = tolerance_of(a, m);
@@ -372,12 +443,14 @@ static bool make_stiff_step(stiff_integrator *s, const arm *a, motion *m)
     memcpy(s->kept, state_kept(m, m->state),
            (KEPT_COUNT + stiff_kept_size(a)) * sizeof *s->kept);
     keep_start(s, m, scale_of(s, a, m, s->kept[STIFF_SCALE]));
+
+    // as long as the error allows
     if (!solve_within_error(s, a, m) || !take_stages(s, a, m)) {
         return false;
     }
     s->used = 0;
 
-    // and no longer than to the first event
+    // no longer than to the first event
     step_end end = {.length = s->step.length};
     dense_search_event(a, m, &end);
     if (end.any && !end_at_event(s, a, m, end)) {
@@ -389,6 +462,8 @@ static bool make_stiff_step(stiff_integrator *s, const arm *a, motion *m)
 
 // --- the engine ------------------------------------------------------------------------
 
+// Lays out the integrator and its arrays in `memory` and chooses the loops for this
+// processor; returns the bytes they take. Without memory it only counts these.
 static size_t stiff_init(const arm *a, void *memory)
 {
     const size_t n = (size_t)a->dof, links = (size_t)a->links,
@@ -403,6 +478,8 @@ static size_t stiff_init(const arm *a, void *memory)
         s->loops = &stiff_loops_4;
     }
 #endif
+
+    // the integrator itself, then the arrays of a step
     layout_add(&l, sizeof *s);
     p->stage = layout_add(&l, n * sizeof *p->stage);
     p->body = layout_add(&l, links * sizeof *p->body);
@@ -417,6 +494,8 @@ static size_t stiff_init(const arm *a, void *memory)
     p->q0 = layout_add(&l, n * sizeof(double));
     p->w0 = layout_add(&l, n * sizeof(double));
     p->a0 = layout_add(&l, n * sizeof(double));
+
+    // scratch, and what the step keeps in the state
     for (int i = 0; i < 4; i++) {
         s->scratch[i] = layout_add(&l, 2 * n * sizeof(double));
     }
@@ -425,7 +504,8 @@ static size_t stiff_init(const arm *a, void *memory)
     return l.length;
 }
 
-// Continues in the step that the state keeps.
+// Continues in the step that the state keeps. If the integrator does not have that step
+// in hand (a copy of an earlier state was restored), it is rebuilt from the state.
 static void resume_stiff_step(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *kept = state_kept(m, m->state);
@@ -447,11 +527,16 @@ static void resume_stiff_step(stiff_integrator *s, const arm *a, motion *m)
     s->used = kept[KEPT_USED];
 }
 
+// Continues the step that the state keeps, or makes a new one where that is used up or
+// the state has jumped. Returns how far the motion can go in it [s], at most `remaining`;
+// 0 if no step can be made.
 static double stiff_advance(const arm *a, motion *m, double remaining, double step)
 {
+    (void)step; // the error alone says how long a step is
     stiff_integrator *s = m->memory;
+
+    // a rest of a step that is only rounding is not continued, unless an event ends it
     const double *kept = state_kept(m, m->state);
-    (void)step;
     const double left = kept[KEPT_LENGTH] - kept[KEPT_USED];
     const double least = kept[STIFF_EVENT] != 0 ? 0 : LEAST_LEFT * kept[KEPT_LENGTH];
     const bool continues =
@@ -462,6 +547,8 @@ static double stiff_advance(const arm *a, motion *m, double remaining, double st
         s->known = false;
         return 0;
     }
+
+    // the state keeps the step
     m->step.history_invalid = false;
     m->most_force = function_greatest(&s->force);
     memcpy(state_kept(m, m->state), s->kept,
