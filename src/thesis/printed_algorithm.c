@@ -17,69 +17,87 @@ static void newmark_rates(const printed_motion *m, const double q[3], double w[3
     const printed_row *from = &m->row;
     double h = m->method.step, beta = m->method.beta, gamma = m->method.gamma;
     for (int i = 0; i < 3; i++) {
-        double free = from->angle[i] + h * from->velocity[i] +
-                      h * h * (0.5 - beta) * m->fed_acceleration[i];
-        alpha[i] = (q[i] - free) / (h * h * beta);
+        // what alpha adds to the angle known before it is beta h^2 alpha
+        double predicted = from->angle[i] + h * from->velocity[i] +
+                           h * h * (0.5 - beta) * m->fed_acceleration[i];
+        alpha[i] = (q[i] - predicted) / (h * h * beta);
         w[i] = from->velocity[i] +
                h * ((1 - gamma) * m->fed_acceleration[i] + gamma * alpha[i]);
     }
 }
 
+// Sets up one Newton step (3.8) at a guess of the `count` unknowns: the three angles and,
+// with the constraint (3.9), the force. matrix[count * count] gets the Jacobian and
+// right_side[4] minus the residual; returns the sum of the residual's magnitudes.
+static double set_up_newton_step(const printed_motion *m, const double unknown[4],
+                                 int count, double *matrix, double right_side[4])
+{
+    const double h = m->method.step;
+    const newmark_slopes slopes = {1 / (m->method.beta * h * h),
+                                   m->method.gamma / (m->method.beta * h)};
+    const double force = unknown[3];
+    double velocity[3], acceleration[3], jacobian[4][4], error = 0;
+
+    // Newmark's rule makes velocities and accelerations functions of the angles
+    newmark_rates(m, unknown, velocity, acceleration);
+    printed_residual(&m->arm, unknown, velocity, acceleration, force, right_side);
+    printed_newmark_jacobian(&m->arm, slopes, unknown, velocity, acceleration, force,
+                             jacobian);
+
+    // without the constraint its row and column are left out
+    for (int i = 0; i < count; i++) {
+        memcpy(matrix + i * count, jacobian[i], (size_t)count * sizeof(double));
+        right_side[i] = -right_side[i];
+        error += fabs(right_side[i]);
+    }
+    return error;
+}
+
 // Solves the discretised equations by a fixed number of Newton steps (3.8) from the state
 // at the start of the time step: three unknowns in free flight, four with the constraint
-// (3.9). It ends early once residual or change are nil. The first guess, unchanged
-// angles, implies velocities of about (1 - gamma/beta) times the old ones, of the wrong
-// sign: with a single Newton step the friction of (2.15) would push the hub on, so that
-// at least two are needed.
+// (3.9). It ends early once residual or change are below a tolerance. The first guess,
+// unchanged angles, implies velocities of about (1 - gamma/beta) times the old ones, of
+// the wrong sign: with a single Newton step the friction of (2.15) would push the hub on,
+// so that at least two are needed.
 static status solve_printed_step(printed_motion *m, printed_row *r)
 {
-    const double tolerance = 1e-6, h = m->method.step;
-    const printed_arm *a = &m->arm;
+    const double tolerance = 1e-6;
     const double *start = m->row.angle;
-    newmark_slopes slopes = {1 / (m->method.beta * h * h),
-                             m->method.gamma / (m->method.beta * h)};
-    double x[4] = {start[0], start[1], start[2], 0};
-    int n = 3;
+    double unknown[4] = {start[0], start[1], start[2], 0};
+    int count = 3;
     if (r->contact) {
-        x[3] = m->newmark_force;
-        n = 4;
+        unknown[3] = m->newmark_force;
+        count = 4;
     }
 
-    for (int iteration = 0; iteration < a->switches.newton_iterations; iteration++) {
-        double w[3], alpha[3], residual[4], full[4][4], matrix[16], error = 0, change = 0;
-
-        // the system at the present guess
-        newmark_rates(m, x, w, alpha);
-        printed_residual(a, x, w, alpha, x[3], residual);
-        printed_newmark_jacobian(a, slopes, x, w, alpha, x[3], full);
-        for (int i = 0; i < n; i++) {
-            memcpy(matrix + i * n, full[i], (size_t)n * sizeof(double));
-            residual[i] = -residual[i];
-            error += fabs(residual[i]);
-        }
+    // Newton's method; the solution of each linear system is the change of the unknowns
+    for (int i = 0; i < m->arm.switches.newton_iterations; i++) {
+        double matrix[16], correction[4];
+        const double error = set_up_newton_step(m, unknown, count, matrix, correction);
         if (!isfinite(error)) {
             return STATUS_NOT_FINITE;
         }
         if (error <= tolerance) {
             break;
         }
-
-        // its correction
-        if (!dense_solve(n, matrix, residual)) {
+        if (!dense_solve(count, matrix, correction)) {
             return STATUS_SINGULAR;
         }
-        for (int i = 0; i < n; i++) {
-            x[i] += residual[i];
-            change += fabs(residual[i]);
+
+        double change = 0;
+        for (int k = 0; k < count; k++) {
+            unknown[k] += correction[k];
+            change += fabs(correction[k]);
         }
         if (change <= tolerance) {
             break;
         }
     }
 
-    memcpy(r->angle, x, sizeof r->angle);
+    // the step's end
+    memcpy(r->angle, unknown, sizeof r->angle);
     if (r->contact) {
-        m->newmark_force = x[3];
+        m->newmark_force = unknown[3];
     } else {
         m->newmark_force = 0;
     }
@@ -104,24 +122,25 @@ static void choose_system(printed_motion *m, printed_row *r)
     m->newmark_force = 0;
 }
 
-// Accelerations and force from (2.15)-(2.17) and (3.13), the second run of the thesis's
-// strategy. With `force_after_release` the listing's own condition, which looks at the
-// last force and not at the contact, so that a force may outlive it.
+// Computes accelerations and force again from (2.15)-(2.17) and (3.13): the second run of
+// the thesis's strategy. It happens in contact or, with `force_after_release`, where the
+// listing does it: that looks at the last force instead of the contact, so that a force
+// may last longer than its contact.
 static status reevaluate(printed_motion *m, printed_row *r)
 {
-    bool wanted = r->contact;
+    bool has_force = r->contact;
     if (m->arm.switches.force_after_release) {
-        wanted = m->force > 0 || m->contact_steps == 1;
+        has_force = m->force > 0 || m->contact_steps == 1;
     }
 
+    // without a force Newmark's accelerations stay
     memcpy(r->acceleration, r->newmark_acceleration, sizeof r->acceleration);
-    if (!wanted) {
+    if (!has_force) {
         m->force = 0;
         return STATUS_OK;
     }
 
-    // the single run has the multiplier of the constraint, and nothing but Newmark's
-    // accelerations
+    // a strategy without the second run takes the constraint's multiplier as the force
     if (m->arm.switches.reevaluation == REEVALUATE_NONE) {
         m->force = m->newmark_force;
     } else if (!printed_reevaluate(&m->arm, r->angle, r->velocity, r->acceleration,
@@ -134,8 +153,8 @@ static status reevaluate(printed_motion *m, printed_row *r)
     return STATUS_OK;
 }
 
-// One time step of Table 3.2 into *r. A step that ends behind the wall is taken back and
-// done again with the constraint.
+// Computes one time step of Table 3.2 into *r. If a free step ends behind the wall, it is
+// computed again with the constraint.
 static status try_step(printed_motion *m, printed_row *r)
 {
     for (;;) {
@@ -154,7 +173,7 @@ static status try_step(printed_motion *m, printed_row *r)
     }
 }
 
-// Name of the first number of the step's end that is not finite, or NULL.
+// The name of the first number that is not finite at the step's end, or NULL if all are.
 static const char *not_finite(const printed_row *r)
 {
     static const char *const names[3][3] = {
@@ -178,6 +197,7 @@ static const char *not_finite(const printed_row *r)
     return "the contact force";
 }
 
+// Gap between the arm and the wall at these angles [m], infinite without a wall.
 static double gap_at(const printed_arm *a, const double angle[3])
 {
     if (wall_stands(&a->wall)) {

@@ -33,8 +33,7 @@ double printed_sign(double velocity)
     return 0;
 }
 
-// Mass terms of (2.16) and (2.17) at a bend, with their parts that do and do not vary
-// with it.
+// The mass terms of (2.16) and (2.17) at a bend d = theta3 - theta2 between the links.
 typedef struct mass_terms {
     double m22, m23; // factors of alpha2, alpha3 in (2.16) [kg m2]
     double m32, m33; // the same in (2.17) [kg m2]
@@ -42,6 +41,7 @@ typedef struct mass_terms {
     double c, s;     // cos d, sin d
 } mass_terms;
 
+// Computes the mass terms at the angles q.
 static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
 {
     double l = a->link_length, e = a->centre, m = a->link_mass;
@@ -55,7 +55,8 @@ static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
     return t;
 }
 
-// Levers of the contact force in (2.16) and (2.17) [m].
+// Lever arms of the contact force [m]: `both` in (2.16), the balance of both links, and
+// `last` in (2.17), that of the last link. The listing puts the force at the link's end.
 static void force_levers(const printed_arm *a, const double q[3], double *both,
                          double *last)
 {
@@ -64,7 +65,8 @@ static void force_levers(const printed_arm *a, const double q[3], double *both,
         *both = l + l * c;
         *last = l;
     } else {
-        // how far along link 3 the contact point lies
+        // how far from the hub's axis the contact point lies along the last link's
+        // direction
         const double reach = wall_along(&a->wall, inline_cos(q[2]), inline_sin(q[2]));
         *both = reach;
         *last = reach - l * c;
@@ -95,7 +97,8 @@ void printed_residual(const printed_arm *a, const double q[3], const double w[3]
     residual[3] = printed_penetration(a, q);
 }
 
-// Derivatives of the force's torques in (2.16) and (2.17) by theta2 and theta3.
+// Adds to the Jacobian what the contact force contributes to (2.16) and (2.17): its lever
+// arms in the force's own column, and how they change with theta2 and theta3.
 static void add_force_derivatives(const printed_arm *a, const double q[3],
                                   const mass_terms *t, double force,
                                   double jacobian[4][4])
@@ -106,7 +109,7 @@ static void add_force_derivatives(const printed_arm *a, const double q[3],
     jacobian[1][3] = both;
     jacobian[2][3] = last;
 
-    // and how the levers change with the angles
+    // the derivatives of the lever arms, times the force
     if (a->switches.force_at_link_end) {
         jacobian[1][1] += force * l * t->s;
         jacobian[1][2] -= force * l * t->s;
@@ -128,14 +131,15 @@ void printed_newmark_jacobian(const printed_arm *a, newmark_slopes slopes,
     double ps = t.coupling * t.s, pc = t.coupling * t.c;
     double counted_twice = a->switches.spring_counted_twice ? a->k2 : 0;
 
-    // what the bend alone changes in (2.16) and (2.17): the cosines of the mass terms and
-    // the sines of the velocity terms; theta3 raises the bend, theta2 lowers it
+    // Derivatives of (2.16) and (2.17) by the bend alone, through the cosines of the mass
+    // terms, the sines of the velocity terms and the spring. The bend increases with
+    // theta3 and decreases with theta2.
     double bend2 =
         -ps * (alpha[1] + alpha[2]) - pc * (w[2] * w[2] - w[1] * w[1]) - counted_twice;
     double bend3 = -ps * alpha[1] + pc * w[1] * w[1] + a->k2;
 
-    // by the angles, with what they change in velocities and accelerations; then the
-    // force's part
+    // Derivatives by the angles: directly, by the velocities and accelerations that
+    // Newmark's rule makes of them (dv, da), and by the contact force.
     memset(jacobian, 0, 16 * sizeof(double));
     jacobian[0][0] = a->hub_inertia * da + a->k1 + a->motor.damping * dv;
     jacobian[0][1] = -a->k1;
@@ -172,12 +176,11 @@ bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[
     force_levers(a, q, &both, &last);
     printed_constraint_gradient(a, q, gradient);
 
-    // without accelerations and force the residuals are what the linear system has to
-    // balance
+    // the right side of the linear system: the residuals without accelerations and force
     printed_residual(a, q, w, rest, 0, residual);
 
-    // two links and (3.13), d2g/dt2 = 0, whose product w2 w3 the listing puts on the
-    // wrong side
+    // The balances of the two links, and (3.13): d2g/dt2 = 0. The listing puts the
+    // latter's term with w2 w3 into the matrix instead of the vector.
     double curvature =
         -wall_right_of(&a->wall, inline_cos(q[2]), inline_sin(q[2])) + l * t.s;
     double cross = 2 * l * t.s * w[1] * w[2];
