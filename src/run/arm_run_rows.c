@@ -8,35 +8,40 @@
 
 // --- the ledger ------------------------------------------------------------------------
 
-#define TINY_ENERGY 1e-9 // below it nothing is called unstable [J]
-#define TINY_TURN   1e-2 // nor below what the motor does in this turn [rad]
-// share of the energy turned over that may not be unaccounted for
+// A residual of the energy balance is judged as a share of the energy that the run has
+// exchanged. That counts as this much at least, and as the motor's work over this turn,
+// so that rounding at the start of a run is not called unstable.
+#define TINY_ENERGY 1e-9 // [J]
+#define TINY_TURN   1e-2 // [rad]
+
+// The share of it that may be unaccounted for before the run is unstable.
 #define WRONG_ENERGY 0.1
 
-// arm_run_audit for a state that holds that energy.
-static inline status audit(arm_run *run, state_energy has)
+// arm_run_audit, given the energy of the present state: the residual is the energy that
+// the arm and what it pushes on hold beyond what all work and losses account for.
+static inline status audit(arm_run *run, state_energy energy)
 {
     const motion *m = run->motion;
     summary *s = &run->recording->result->summary;
     const double held = motion_held_energy(&run->arm, m, m->state);
     const double residual =
-        motion_unaccounted(m, m->state, has.kinetic + has.strain + held);
+        motion_unaccounted(m, m->state, energy.kinetic + energy.strain + held);
     s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
 
-    // what it is measured by
+    // the energy exchanged so far, by which the residual is measured
     const double torque = run->arm.motor.torque + m->state[SLOT_MOTOR_TORQUE];
-    const double turned_over =
+    const double exchanged =
         fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
         fabs(held) + fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED]) +
         m->record.start_energy + fabs(torque) * TINY_TURN + TINY_ENERGY;
-    if (!isfinite(residual) || !isfinite(turned_over)) {
+    if (!isfinite(residual) || !isfinite(exchanged)) {
         return STATUS_NOT_FINITE;
     }
 
-    // steps that do not resolve the fastest modes damp them: there energy may vanish, not
-    // appear
+    // steps that are too long for the fastest modes damp them: such a run may lose
+    // energy, but not gain it
     const double wrong = motion_unresolved(&run->arm, m) ? residual : fabs(residual);
-    if (wrong > WRONG_ENERGY * turned_over) {
+    if (wrong > WRONG_ENERGY * exchanged) {
         return STATUS_UNSTABLE;
     }
     return STATUS_OK;
@@ -47,7 +52,8 @@ status arm_run_audit(arm_run *run)
     return audit(run, motion_energy(&run->arm, run->motion, run->motion->state));
 }
 
-// What the step just made put into the arm, or took from it [J].
+// The energy that the step just made moved into the arm or out of it [J]: the magnitudes
+// of the motor's work, of the moving wall's and of the weight's, added up.
 static double work_of_step(const arm_run *run)
 {
     const motion *m = run->motion;
@@ -66,74 +72,98 @@ void arm_run_note_work(arm_run *run, double work)
 
 // --- rows ------------------------------------------------------------------------------
 
-// Of a step: a row of the grid so near a step's end lies at it.
+// Rows lie on a grid of multiples of method.step. One within this share of a step from
+// the end of a step lies at that end.
 #define GRID_TOLERANCE 1e-9
 
-// The row of a state that holds that energy.
-static sample row_of(const arm_run *run, double *state, state_energy has, double impulse)
+// Fills in the signals of the motion: angles and their derivatives, gap, force and
+// torques.
+static void add_motion_signals(const arm_run *run, double *state, sample *row)
+{
+    // of the angles, those of the bodies that the signals name
+    const motion *m = run->motion;
+    const double *angles = state_angles(m, state);
+    const double *velocities = state_velocities(m, state);
+    const double *accelerations = state_accelerations(m, state);
+    const int first = run->arm.first, last = run->arm.dof - 1;
+    row->time = state[SLOT_TIME];
+    row->hub_angle = angles[0];
+    row->first_angle = angles[first];
+    row->last_angle = angles[last];
+    row->hub_velocity = velocities[0];
+    row->first_velocity = velocities[first];
+    row->last_velocity = velocities[last];
+    row->hub_acceleration = accelerations[0];
+    row->first_acceleration = accelerations[first];
+    row->last_acceleration = accelerations[last];
+
+    // contact with the wall
+    const value_and_slope gap = state_rest_gap(state);
+    row->gap = gap.value;
+    row->gap_velocity = gap.slope;
+    row->force = state[SLOT_FORCE];
+    row->contact = state[SLOT_CONTACT];
+
+    // motor and friction at the hub
+    const motor_model *motor = &run->arm.motor;
+    row->sticking = state[SLOT_FRICTION] == HUB_STICK;
+    row->voltage = motor->voltage;
+    row->motor_torque = motor->torque + state[SLOT_MOTOR_TORQUE];
+    row->friction_torque = state[SLOT_FRICTION_TORQUE];
+}
+
+// Fills in the signals of the energy ledger.
+static void add_energy_signals(const arm_run *run, double *state, state_energy energy,
+                               sample *row)
+{
+    const motion *m = run->motion;
+    const double *quadratures = state_quadratures(m, state);
+    const double held = motion_held_energy(&run->arm, m, state);
+    row->kinetic_energy = energy.kinetic;
+    row->strain_energy = energy.strain;
+    row->motor_work = motion_motor_work(m, state);
+    row->external_work = state[SLOT_EXTERNAL_WORK];
+    row->viscous_loss = quadratures[QUADRATURE_VISCOUS];
+    row->friction_loss = state[SLOT_FRICTION_LOSS];
+    row->damping_loss = quadratures[QUADRATURE_DAMPING];
+    row->impact_loss = state[SLOT_IMPACT_LOSS];
+    row->energy_residual =
+        motion_unaccounted(m, state, energy.kinetic + energy.strain + held);
+}
+
+// Fills in the signals of a wall that gives or moves, and of the weight; they are NaN for
+// an arm without them.
+static void add_wall_signals(const arm_run *run, double *state, sample *row)
 {
     const arm *a = &run->arm;
     const motion *m = run->motion;
-    const double none = (double)NAN;
+    const double *quadratures = state_quadratures(m, state);
+    row->wall_energy = row->wall_loss = row->face_depth = (double)NAN;
+    row->wall_place = row->wall_work = row->weight_energy = (double)NAN;
 
-    // the state's parts, and the links that the signals name
-    double *q = state_angles(m, state), *w = state_velocities(m, state);
-    double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
-    const int first = a->first, last = a->dof - 1;
-
-    // every signal of the table that the corrected model has
-    const value_and_slope gap = state_rest_gap(state);
-    const double held = motion_held_energy(a, m, state);
-    sample row = {
-        .time = state[SLOT_TIME],
-        .hub_angle = q[0],
-        .first_angle = q[first],
-        .last_angle = q[last],
-        .hub_velocity = w[0],
-        .first_velocity = w[first],
-        .last_velocity = w[last],
-        .hub_acceleration = al[0],
-        .first_acceleration = al[first],
-        .last_acceleration = al[last],
-        .gap = gap.value,
-        .gap_velocity = gap.slope,
-        .force = state[SLOT_FORCE],
-        .impulse = impulse,
-        .contact = state[SLOT_CONTACT],
-        .sticking = state[SLOT_FRICTION] == HUB_STICK,
-        .voltage = a->motor.voltage,
-        .motor_torque = a->motor.torque + state[SLOT_MOTOR_TORQUE],
-        .friction_torque = state[SLOT_FRICTION_TORQUE],
-        .kinetic_energy = has.kinetic,
-        .strain_energy = has.strain,
-        .motor_work = motion_motor_work(m, state),
-        .external_work = state[SLOT_EXTERNAL_WORK],
-        .viscous_loss = quadrature[QUADRATURE_VISCOUS],
-        .friction_loss = state[SLOT_FRICTION_LOSS],
-        .damping_loss = quadrature[QUADRATURE_DAMPING],
-        .impact_loss = state[SLOT_IMPACT_LOSS],
-        .energy_residual = motion_unaccounted(m, state, has.kinetic + has.strain + held),
-        .wall_energy = none,
-        .wall_loss = none,
-        .wall_place = none,
-        .wall_work = none,
-        .weight_energy = none,
-        .face_depth = none,
-    };
-
-    // those of walls and weight, where there are such
+    // each where the scenario has it
     if (!motion_wall_is_rigid(m)) {
-        row.wall_energy = motion_wall_energy(a, m, state);
-        row.wall_loss = quadrature[QUADRATURE_WALL];
-        row.face_depth = state[SLOT_FACE];
+        row->wall_energy = motion_wall_energy(a, m, state);
+        row->wall_loss = quadratures[QUADRATURE_WALL];
+        row->face_depth = state[SLOT_FACE];
     }
     if (wall_moves(&a->wall)) {
-        row.wall_place = wall_motion_at(&a->wall.motion, state[SLOT_TIME]).place;
-        row.wall_work = quadrature[QUADRATURE_PUSHED];
+        row->wall_place = wall_motion_at(&a->wall.motion, state[SLOT_TIME]).place;
+        row->wall_work = quadratures[QUADRATURE_PUSHED];
     }
     if (a->amount.gravity != 0) {
-        row.weight_energy = chain_weight_energy(a, q);
+        row->weight_energy = chain_weight_energy(a, state_angles(m, state));
     }
+}
+
+// The row of a state with that kinetic and strain energy, at which an impulse [N s] acts.
+static sample row_of_state(const arm_run *run, double *state, state_energy energy,
+                           double impulse)
+{
+    sample row = {.impulse = impulse};
+    add_motion_signals(run, state, &row);
+    add_energy_signals(run, state, energy, &row);
+    add_wall_signals(run, state, &row);
     recording_add_rig_signals(run->recording, &row);
     return row;
 }
@@ -152,13 +182,15 @@ double *arm_run_present_state(const arm_run *run)
 
 sample arm_run_row(const arm_run *run, double *state)
 {
-    return row_of(run, state, motion_energy(&run->arm, run->motion, state), 0);
+    return row_of_state(run, state, motion_energy(&run->arm, run->motion, state), 0);
 }
 
-static status record_row_of(arm_run *run, double *state, state_energy has, double impulse)
+// Adds the row of a state with that energy to the trace.
+static status record_state_row(arm_run *run, double *state, state_energy energy,
+                               double impulse)
 {
     const motion *m = run->motion;
-    const sample row = row_of(run, state, has, impulse);
+    const sample row = row_of_state(run, state, energy, impulse);
     return recording_add_row(run->recording, &row, state_angles(m, state),
                              state_velocities(m, state));
 }
@@ -168,21 +200,24 @@ status arm_run_record_row(arm_run *run, double *state, double impulse)
     if (!run->recording->options->keep_trace) {
         return STATUS_OK;
     }
-    const state_energy has = motion_energy(&run->arm, run->motion, state);
-    return record_row_of(run, state, has, impulse);
+    const state_energy energy = motion_energy(&run->arm, run->motion, state);
+    return record_state_row(run, state, energy, impulse);
 }
 
-// Records rows within the step just made or under way, stepped to again from its start:
-// side by side if the engine can do that.
+// Records rows at instants within the step just made or under way. The engine computes
+// the states there from the start of the step, all at once if it can.
 static status record_within(arm_run *run, const double *times, int count)
 {
+    // all states at once
     motion *m = run->motion;
-    state_energy has[MOTION_TOGETHER];
+    state_energy energies[MOTION_TOGETHER];
     const bool together =
-        count > 1 && motion_between_all(&run->arm, m, times, count, has);
+        count > 1 && motion_between_all(&run->arm, m, times, count, energies);
+
+    // a row for each, whose state is computed here where that was not possible
     for (int i = 0; i < count; i++) {
         if (together) {
-            TRY(record_row_of(run, m->between + i * m->size, has[i], 0));
+            TRY(record_state_row(run, m->between + i * m->size, energies[i], 0));
         } else {
             double *state = motion_between(&run->arm, m, times[i], STATE_WHOLE);
             if (state == NULL) {
@@ -203,7 +238,7 @@ status arm_run_record_first_row(arm_run *run)
     return arm_run_record_row(run, run->motion->state, 0);
 }
 
-// The distance between two rows of the grid [s].
+// The time between two rows of the grid [s].
 static double grid_interval(const arm_run *run)
 {
     return run->recording->scenario->parameters.method.step;
@@ -227,7 +262,7 @@ static status record_rows_before(arm_run *run, double instant)
     const double interval = grid_interval(run);
     double time = (double)rows->next * interval;
 
-    // some at a time
+    // as many at a time as the engine computes together
     while (time < instant) {
         double times[MOTION_TOGETHER];
         int count = 0;
@@ -249,8 +284,8 @@ status arm_run_record_rows_to(arm_run *run, double time)
     return record_rows_before(run, time + GRID_TOLERANCE * grid_interval(run));
 }
 
-// Records the rows of the grid that lie within the step just made, and passes over one at
-// its end if an event is there.
+// Records the rows of the grid that lie within the step just made. A row of the grid at
+// the step's end is left to the event there, if there is one.
 static status record_grid(arm_run *run, bool at_event)
 {
     row_record *rows = &run->recording->state.rows;
@@ -258,13 +293,13 @@ static status record_grid(arm_run *run, bool at_event)
     const double interval = grid_interval(run), now = m->state[SLOT_TIME];
     const double tolerance = GRID_TOLERANCE * interval;
 
-    // those within it
+    // those before its end
     TRY(record_rows_before(run, now - tolerance));
     if ((double)rows->next * interval > now + tolerance) {
         return STATUS_OK;
     }
 
-    // then one at its end; an event records its own rows
+    // one at its end; an event records its own rows
     rows->next++;
     if (!at_event) {
         TRY(arm_run_record_row(run, m->state, 0));
@@ -277,14 +312,15 @@ static status record_grid(arm_run *run, bool at_event)
 
 // --- flight ----------------------------------------------------------------------------
 
-// The fastest mode turns by no more in a piece of a step, in which the tip's speed then
-// has one extreme at most but for little [rad].
+// A step in flight is cut into pieces in which the phase of the fastest mode advances by
+// this much at most [rad]: nearly always the tip's speed then has one extreme at most in
+// each.
 #define RATE_REACH 0.5
 
 enum { SEPARATION_BISECTIONS = 30, FASTEST_THIRDS = 24, MOST_FLIGHT_PIECES = 16 };
 
-// The gap at an instant [s] within the step just made, a step in free flight; false, and
-// none, if that fails.
+// Computes the gap and its rate at an instant [s] within the step just made, a step in
+// free flight. False, with a gap of zero, if the state there cannot be computed.
 static bool gap_within(const arm *a, motion *m, double time, value_and_slope *gap)
 {
     *gap = (value_and_slope){0, 0};
@@ -299,18 +335,18 @@ static bool gap_within(const arm *a, motion *m, double time, value_and_slope *ga
     return state != NULL;
 }
 
-// Whether the gap was a separation, above SEPARATION_GAP, at any instant of the step just
-// made. A whole flight may lie within it, so its end says little: look where the gap
-// stops growing.
+// Whether the gap exceeded SEPARATION_GAP at any instant of the step just made. A whole
+// flight may lie within one step, so that the gap is looked at where it is the largest:
+// where its rate changes sign, which bisection finds.
 static bool flight_separated(const arm *a, motion *m)
 {
-    double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
-
-    // the ends of the step decide nearly always; in contact the gap is that to the wall
-    // at rest, beyond which a face with a mass may swing
+    // in contact there is no separation; the gap, which is that to the wall at rest, may
+    // be large there where a face with a mass swings
     if (m->state[SLOT_CONTACT] != 0) {
         return false;
     }
+
+    // nearly always the end of the step decides
     if (m->state[SLOT_GAP] > SEPARATION_GAP) {
         return true;
     }
@@ -320,6 +356,7 @@ static bool flight_separated(const arm *a, motion *m)
 
     // the gap closes at the step's end: bisect for the instant at which it was the
     // largest
+    double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
     for (int i = 0; i < SEPARATION_BISECTIONS; i++) {
         const double middle = 0.5 * (from + to);
         value_and_slope gap;
@@ -335,9 +372,9 @@ static bool flight_separated(const arm *a, motion *m)
     return false;
 }
 
-// The rate of the gap at the ends of equal pieces of the step just made: `count` of them
-// from its start on. What cannot be had is HUGE_VAL.
-static void rates_of(const arm *a, motion *m, int count, double *rate)
+// Fills in the rate of the gap at the start of the step just made and at the ends of its
+// `count` equal pieces. A rate that cannot be computed is HUGE_VAL.
+static void gap_rates(const arm *a, motion *m, int count, double *rate)
 {
     const double from = m->trial[SLOT_TIME], width = (m->state[SLOT_TIME] - from) / count;
     rate[0] = m->trial[SLOT_GAP_VELOCITY];
@@ -352,11 +389,11 @@ static void rates_of(const arm *a, motion *m, int count, double *rate)
     }
 }
 
-// The least rate of the gap between two instants [s], where it falls and then grows, of
-// which one that is known is `least`.
+// The smallest rate of the gap between two instants [s], between which the rate falls and
+// then grows. `least` is one that is known there. Found by ternary search, which drops
+// the outer third next to the larger of two rates.
 static double least_rate(const arm *a, motion *m, double from, double to, double least)
 {
-    // thirds of what is left, of which the better two stay
     for (int i = 0; i < FASTEST_THIRDS; i++) {
         const double early = from + (to - from) / 3, late = to - (to - from) / 3;
         value_and_slope first, second;
@@ -373,36 +410,41 @@ static double least_rate(const arm *a, motion *m, double from, double to, double
     return least;
 }
 
-// How fast the tip came towards the wall at most in the step just made [m/s]: at its ends
-// or, where it was faster and then slower, in between. Negative if it only went away; 0
-// without a wall.
+// The largest speed at which the tip came towards the wall in the step just made [m/s].
+// It is negative if the tip only went away, and 0 without a wall.
 static double flight_closing_speed(const arm *a, motion *m)
 {
-    double rate[MOST_FLIGHT_PIECES + 1];
-    const double from = m->trial[SLOT_TIME], length = m->state[SLOT_TIME] - from;
     if (!wall_stands(&a->wall)) {
         return 0;
     }
 
-    // the piece of the step at whose end the tip is fastest
-    int count = 1, fastest = 0;
+    // enough pieces for one extreme in each
+    const double from = m->trial[SLOT_TIME], length = m->state[SLOT_TIME] - from;
+    int count = 1;
     if (engine_is_dense(m->engine)) {
         const double pieces = length * a->highest_frequency / RATE_REACH;
         count = (int)smaller(larger(ceil(pieces), 1), MOST_FLIGHT_PIECES);
     }
-    rates_of(a, m, count, rate);
+
+    // the piece at whose end the tip is fastest: where the rate of the gap is the least
+    double rate[MOST_FLIGHT_PIECES + 1];
+    int fastest = 0;
+    gap_rates(a, m, count, rate);
     for (int i = 1; i <= count; i++) {
         if (rate[i] < rate[fastest]) {
             fastest = i;
         }
     }
 
-    // it may be faster to either side of there, but not before the step and after it
+    // the tip is faster near there, unless that is an end of the step towards which the
+    // speed grows
     const bool falls = fastest > 0 || m->trial[SLOT_GAP_ACCELERATION] < 0;
     const bool grows = fastest < count || m->state[SLOT_GAP_ACCELERATION] > 0;
     if (!falls || !grows) {
         return -rate[fastest];
     }
+
+    // between the pieces to both sides
     const int before = fastest > 0 ? fastest - 1 : 0;
     const int after = fastest < count ? fastest + 1 : count;
     return -least_rate(a, m, from + length * before / count,
@@ -425,14 +467,14 @@ status arm_run_record_step(arm_run *run, bool at_event)
     motion *m = run->motion;
     summary *s = &r->result->summary;
 
-    // how far the arm has gone from the wall, and what was put into it
+    // whether the arm has separated from the wall, and the energy put into it
     if (!isnan(s->first_contact_s) && !r->state.rows.separated &&
         flight_separated(&run->arm, m)) {
         r->state.rows.separated = true;
     }
     arm_run_note_work(run, work_of_step(run));
 
-    // an arm held still has the energy it had
+    // the energy balance; an arm held still keeps the energy it had
     status balance = STATUS_OK;
     if (!motion_held_still(m) && m->step.energy.kinetic >= 0) {
         balance = audit(run, m->step.energy);

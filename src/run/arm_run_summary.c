@@ -10,16 +10,23 @@
 #include "src/run/arm_run.h"
 #include "src/run/recording.h"
 
-// motions of this size are followed to 1e-5 of it [rad, m, N m]
-#define SMALL_FLIGHT   1e-10
-#define SMALL_CONTACT  1e-7  // the same of those that meet the wall
-#define DEEPEST        1e-9  // that an arm may be in a rigid wall by rounding [m]
-#define ANGLE_ROUNDING 1e-16 // of an arm that something holds [rad]
+// The smallest turn [rad], travel of the tip [m] and torque [N m] of a run whose events
+// are located to 1e-5 of its motion, in free flight and with contact. The tolerances of
+// events are fixed numbers that do not scale with the arm, and so is this limit: one
+// number in each of the three units.
+#define SMALL_FLIGHT  1e-10
+#define SMALL_CONTACT 1e-7
+
+// How deep rounding may put an arm into a rigid wall [m].
+#define DEEPEST 1e-9
+
+// Rounding error of the angles of an arm that friction or the wall holds [rad].
+#define ANGLE_ROUNDING 1e-16
 
 // --- why it ended early ----------------------------------------------------------------
 
-// Advice to the user where the energy balance does not close: dense engines choose their
-// steps themselves.
+// Advice to the user where the energy balance does not close. Dense engines choose their
+// steps themselves, so that a shorter method.step would not help them.
 static const char *advice(const motion *m)
 {
     if (engine_is_dense(m->engine)) {
@@ -38,7 +45,8 @@ status arm_run_explain(const arm_run *run, status s, fault *f)
     return fault_set(f, s, "at t = %.9g s: %s", arm_run_time(run), status_text(s));
 }
 
-// Says where a flat wall could no longer hold the arm.
+// Writes the message of a run that ends because the arm is folded across the hub's axis,
+// where no force of a flat wall can hold the tip.
 static status explain_fold(const arm_run *run, fault *f)
 {
     const motion *m = run->motion;
@@ -79,7 +87,8 @@ status arm_run_explain_step(const arm_run *run, status s, fault *f)
 
 // --- remarks ---------------------------------------------------------------------------
 
-// Adds a sentence to the remarks.
+// Appends a sentence, printf-like, to the message of the summary, after a semicolon if
+// there is one already.
 static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char *format,
                                                          ...)
 {
@@ -93,7 +102,9 @@ static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char 
     va_end(values);
 }
 
-// The beam as one spring, 0: one link on a rigid hub [N m/rad].
+// The stiffness of the whole beam as one spring [N m/rad]: the joints of n links in
+// series have the stiffness of one joint times 2 / n. A single link has the spring of its
+// hub, 0 if that is rigid.
 static double beam_stiffness(const arm *a)
 {
     if (a->links > 1) {
@@ -102,8 +113,10 @@ static double beam_stiffness(const arm *a)
     return a->hub_stiffness;
 }
 
-// How far so much energy [J] bends the beam, or turns one rigid link in the time [s] it
-// has [rad].
+// The angle by which an energy [J] moves the arm [rad]: where there is a spring, the
+// angle theta at which it holds that energy, E = k theta^2; for one rigid link, the angle
+// that it turns within the run's duration T [s], E = I (theta / T)^2. Both are orders of
+// magnitude, without factors of 1/2.
 static double turn_of_energy(const arm *a, double energy, double duration)
 {
     const double length = a->links * a->link_length;
@@ -115,40 +128,57 @@ static double turn_of_energy(const arm *a, double energy, double duration)
     return sqrt(energy / (inertia / (duration * duration)));
 }
 
-// Adds a remark where the whole motion is so small that the tolerances of events
-// (absolute lengths, speeds and torques) are too large a share of it. An arm that has not
-// moved is held by friction, or by the wall with more than that.
+// Says that a run of so little energy [J] is inaccurate, with the turn [rad], the travel
+// of the tip [m] and the torque [N m] that it comes to.
+static void remark_on_small_motion(const arm_run *run, double energy, double turn,
+                                   double travel, double torque)
+{
+    summary *s = &run->recording->result->summary;
+    const char *effect = "turn the arm";
+    if (beam_stiffness(&run->arm) > 0) {
+        effect = "bend the beam";
+    }
+    s->inaccurate = true;
+    remark(s,
+           "the %.3g J put in %s by some %.2g rad only (%.2g m at the tip, with "
+           "torques of %.2g N m), so little that the tolerances of contact and "
+           "friction show",
+           energy, effect, turn, travel, torque);
+}
+
+// Adds a remark where turn, travel of the tip or torque of the whole motion is so small
+// that the tolerances of events are too large a share of it.
 static void judge_size(const arm_run *run, double energy)
 {
     const arm *a = &run->arm;
-    summary *s = &run->recording->result->summary;
-    const double duration = run->recording->scenario->parameters.run.duration;
+    const summary *s = &run->recording->result->summary;
+    const double limit = isnan(s->first_contact_s) ? SMALL_FLIGHT : SMALL_CONTACT;
 
-    // the least of turn, travel of the tip and torque
+    // how far the energy moved the arm, at the hub and at the tip
+    const double duration = run->recording->scenario->parameters.run.duration;
     const double turn = turn_of_energy(a, energy, duration);
     const double travel = turn * a->links * a->link_length;
-    double torque = fabs(a->motor.torque) - a->motor.stiction, size = torque;
+
+    // a mean torque did that work over the turn
     if (turn > 0) {
-        torque = energy / turn;
-        size = smaller(smaller(turn, travel), torque);
+        const double mean_torque = energy / turn;
+        if (turn < limit || travel < limit || mean_torque < limit) {
+            remark_on_small_motion(run, energy, turn, travel, mean_torque);
+        }
+        return;
     }
 
-    const double least = isnan(s->first_contact_s) ? SMALL_FLIGHT : SMALL_CONTACT;
-    if (size > 0 && size < least) {
-        const char *effect = "turn the arm";
-        if (beam_stiffness(a) > 0) {
-            effect = "bend the beam";
-        }
-        s->inaccurate = true;
-        remark(s,
-               "the %.3g J put in %s by some %.2g rad only (%.2g m at the tip, with "
-               "torques of %.2g N m), so little that the tolerances of contact and "
-               "friction show",
-               energy, effect, turn, travel, torque);
+    // an arm that has not moved although the motor overcomes stiction is held by the
+    // wall, with the rest of the torque
+    const double torque_on_wall = fabs(a->motor.torque) - a->motor.stiction;
+    if (torque_on_wall > 0 && torque_on_wall < limit) {
+        remark_on_small_motion(run, energy, turn, travel, torque_on_wall);
     }
 }
 
-// Wall and friction hold the one link both: which forces are possible.
+// Says between which bounds the force on the wall lies where wall and friction hold a
+// single link together, so that neither force is determined: the bounds of the steady
+// force where there is one, else those of the largest force.
 static void remark_on_bounds(summary *s)
 {
     const char *which = "largest";
@@ -165,17 +195,20 @@ static void remark_on_bounds(summary *s)
            which, low, high);
 }
 
-// What friction leaves open of the force of one link.
+// Remarks on a single link that friction holds against the wall, where the force could be
+// another one: between bounds for a rigid wall, and by another way to the same depth for
+// a wall that gives.
 static void remark_on_single_link(const arm_run *run)
 {
     const motion *m = run->motion;
     summary *s = &run->recording->result->summary;
+    // bounds were recorded: the wall is rigid
     if (!isnan(s->peak_force_high_N)) {
         remark_on_bounds(s);
         return;
     }
 
-    // within a wall that gives the depth says the force
+    // the link rests within a wall that gives, whose depth determines the force
     const bool within = !motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0;
     if (within && m->dof == 1 && m->state[SLOT_FRICTION] == HUB_STICK) {
         const force_bounds held = motion_held_forces(&run->arm, m, m->state);
@@ -187,8 +220,9 @@ static void remark_on_single_link(const arm_run *run)
     }
 }
 
-// What rounding of the angles makes of the largest torque and the beam's stiffness [J]:
-// an arm that something holds seems to have so much put in.
+// The energy [J] that rounding of the angles alone seems to put into an arm that is held
+// still: the work of the largest torque T over the rounding error e of an angle, and the
+// strain of the beam at that error, T e + k e^2.
 static double rounding_energy(const arm_run *run)
 {
     const arm *a = &run->arm;
@@ -198,7 +232,8 @@ static double rounding_energy(const arm_run *run)
     return ANGLE_ROUNDING * (torque + ANGLE_ROUNDING * beam_stiffness(a));
 }
 
-// What the model of the wall left out of the contacts.
+// Remarks on contacts that the model of the wall simplifies: bounces without end, which
+// it cuts off, and touches of a point behind the base of the last link.
 static void remark_on_contacts(const arm_run *run)
 {
     summary *s = &run->recording->result->summary;
@@ -219,7 +254,8 @@ static void remark_on_contacts(const arm_run *run)
     }
 }
 
-// What no law but a recorded command takes into account.
+// Remarks that the control law does not know the weight of an arm in a tilted plane. A
+// recorded command (playback) is no law, and gets no remark.
 static void remark_on_weight(const arm_run *run)
 {
     const recording *r = run->recording;
@@ -229,6 +265,7 @@ static void remark_on_weight(const arm_run *run)
         return;
     }
 
+    // the weight may be what keeps the arm from the wall
     const char *missed = "";
     if (isnan(s->first_contact_s) && wall_stands(&run->arm.wall)) {
         missed = ", and its arm does not come to the wall";
@@ -238,12 +275,15 @@ static void remark_on_weight(const arm_run *run)
            p->arm.tilt, missed);
 }
 
-// Whether ledger, wall and friction were kept to.
+// Calls the run inaccurate, with a remark each, where its energy ledger does not close,
+// where the arm was inside a rigid wall, and where friction held more than it can.
 static void judge_accuracy(const arm_run *run, double energy, double rounding)
 {
     const motion *m = run->motion;
     summary *s = &run->recording->result->summary;
     const double bound = run->recording->scenario->parameters.method.residual_bound;
+
+    // the ledger of energy
     s->inaccurate = s->energy_residual_J > bound * energy + rounding;
     if (s->inaccurate) {
         remark(s,
@@ -252,12 +292,14 @@ static void judge_accuracy(const arm_run *run, double energy, double rounding)
                s->energy_residual_J, energy, bound, m->engine->name, advice(m));
     }
 
+    // the rigid wall
     if (motion_wall_is_rigid(m) && s->max_penetration_m > DEEPEST) {
         s->inaccurate = true;
         remark(s, "the arm was %.3g m inside a rigid wall: the method was %s%s",
                s->max_penetration_m, m->engine->name, advice(m));
     }
 
+    // friction at the hub
     if (m->record.overheld > 0) {
         s->inaccurate = true;
         remark(s,
@@ -287,7 +329,8 @@ static void judge(const arm_run *run)
 
 // --- the summary -----------------------------------------------------------------------
 
-// The largest force, be it of the time before the landing or after it.
+// Writes the largest force and its time. The motion's record of it began anew at the
+// landing, so that the peak before that counts as well.
 static void summarise_peak(const arm_run *run)
 {
     const contact_history *contact = &run->recording->state.contact;
@@ -304,12 +347,15 @@ static void summarise_peak(const arm_run *run)
     }
 }
 
-// What contact there was.
+// Writes what the summary says of contacts: separations, landing, first pulse, and the
+// largest force with its bounds. Pulses that the end of the run cuts are closed.
 static void summarise_contact(arm_run *run)
 {
     recording *r = run->recording;
     const contact_history *contact = &r->state.contact;
     summary *s = &r->result->summary;
+
+    // a flight that the run ends in, and the landing
     if (r->state.rows.separated) {
         s->separations++;
     }
@@ -318,6 +364,7 @@ static void summarise_contact(arm_run *run)
     }
     r->result->landing = contact->landing;
 
+    // first pulse and largest force, also as a sensor of 1 ms reads it
     if (!isnan(s->first_contact_s)) {
         if (contact->pulse_open) {
             arm_run_close_first_pulse(run);
@@ -330,7 +377,8 @@ static void summarise_contact(arm_run *run)
                          &s->peak_force_high_N);
 }
 
-// What only a complete run has: the force of its end.
+// Writes what only a complete run has: the mean force over the window at its end, with
+// its bounds, and what the rig's summary says of that force.
 static void summarise_end(const arm_run *run)
 {
     recording *r = run->recording;
@@ -340,6 +388,7 @@ static void summarise_end(const arm_run *run)
     const double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
     recording_finish_summary(r, integral - force->integral_at_window);
 
+    // bounds of the mean, where the force is not determined
     const double window = fmin(STEADY_WINDOW, r->scenario->parameters.run.duration);
     const force_bounds mean = {force->in_window.low / window,
                                force->in_window.high / window};
@@ -352,7 +401,7 @@ void arm_run_summarise(arm_run *run, status failed)
     const motion *m = run->motion;
     summary *s = &run->recording->result->summary;
 
-    // steps, the wall and what was turned over
+    // steps, penetration and work
     s->steps = (double)m->record.steps;
     s->max_penetration_m = fmax(0, m->record.largest_penetration);
     s->motor_work_J = motion_motor_work(m, m->state);
