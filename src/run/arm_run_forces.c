@@ -9,18 +9,19 @@
 
 #define SHORTEST_MEAN 1e-9 // a step shorter than this has the mean of its ends [s]
 
-// By how much a mean may leave the range of its force: a share of it, and of the integral
-// so far.
+// By how much a mean force may leave the range of the force it is the mean of: by a share
+// of that range, and by the rounding of the integral, a share of its value.
 #define BEYOND_RANGE    1e-6
 #define INTEGRAL_DIGITS 1e-14
 
-// Largest (fastest rate) x (time) of a piece: over it a parabola is exact to 1e-4 of the
-// fastest mode's force, and to 1e-6 for sensors with a lag.
+// The longest piece of a step, as its duration times the fastest rate of the arm [rad].
+// Over a piece of FORCE_REACH a parabola is exact to 1e-4 of the fastest mode's force,
+// over one of SENSOR_REACH the readings of sensors with a lag are exact to 1e-6.
 #define FORCE_REACH  0.25
 #define SENSOR_REACH 0.05
 
-// A slope at the start that predicts this many times the change found over a piece
-// belongs to a decay.
+// If the slope at the start of a piece predicts this many times the change of the force
+// that is found over the piece, the force begins with a fast decay.
 #define FALLS_AT_ONCE 4
 
 enum { MOST_PIECES = 320 }; // that sensors follow a step in
@@ -38,22 +39,24 @@ sensed_motion arm_run_sensed_motion(const arm_run *run, double *state)
                            .force = state[SLOT_FORCE]};
 }
 
+// The force over every step so far.
 static shared_array *forces_of(const arm_run *run)
 {
     return &run->recording->result->history.forces;
 }
 
-// The force over the step just made.
+// The force over the step just made: at both ends, and its mean, which is the difference
+// of the motion's force integral over the length of the step.
 static force_step force_over_step(const motion *m)
 {
-    const double *start = m->trial; // where the step left its beginning
+    const double *start = m->trial; // the state at the beginning of the step
     force_step whole = {.start = start[SLOT_TIME],
                         .end = m->state[SLOT_TIME],
                         .first = start[SLOT_FORCE],
                         .last = m->state[SLOT_FORCE]};
 
-    // between stops that differ by rounding only, the integral's difference is all
-    // rounding
+    // over a step between two stops that differ by rounding only, the difference of the
+    // integral is rounding as well, and the mean of the ends is better
     const double length = whole.end - whole.start;
     if (length > SHORTEST_MEAN) {
         const double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
@@ -65,8 +68,8 @@ static force_step force_over_step(const motion *m)
     return whole;
 }
 
-// Whether the mean over the step just made lies within what the force is in it: from zero
-// to the bound that a dense engine has of it.
+// Whether the mean over the step just made lies between zero and the largest force within
+// the step, of which a dense engine knows a bound.
 static bool mean_is_possible(const motion *m, const force_step *force)
 {
     if (!engine_is_dense(m->engine)) {
@@ -80,14 +83,16 @@ static bool mean_is_possible(const motion *m, const force_step *force)
     return force->mean >= -slack && force->mean <= most + slack;
 }
 
-// How many pieces of that reach a step has at most.
+// The largest number of pieces of a reach that a step is cut into: MOST_PIECES of the
+// shortest, those for sensors.
 static int most_pieces(double reach)
 {
     return (int)(MOST_PIECES * SENSOR_REACH / reach);
 }
 
-// Number of pieces for a step of large (fastest rate) x (length), so that a parabola is
-// accurate in each. Only dense engines make such steps.
+// The number of equal pieces that a step of this length [s] is cut into, so that none
+// goes beyond `reach`, its duration times the rate of the fastest vibration. Only dense
+// engines make steps that need more than one.
 static int pieces_of_step(const arm_run *run, double length, double reach)
 {
     motion *m = run->motion;
@@ -95,7 +100,8 @@ static int pieces_of_step(const arm_run *run, double length, double reach)
         return 1;
     }
 
-    // by the fastest vibration, but no more than the engine itself follows
+    // by the fastest vibration, but no more pieces than the parabolas that the engine
+    // itself needs for its whole step, in proportion to the length
     double pieces = length * motion_vibration(&run->arm, m, m->trial) / reach;
     const double whole = state_kept(m, m->trial)[KEPT_LENGTH];
     if (m->engine->parabolas > 0 && whole > 0) {
@@ -108,15 +114,17 @@ static int pieces_of_step(const arm_run *run, double length, double reach)
     return (int)ceil(smaller(pieces, most_pieces(reach)));
 }
 
-// Whether the decays that an event excites are faster than the arm's vibrations.
+// Whether the arm has decays that are faster than its fastest vibration; events excite
+// them.
 static bool decays_outrun(const arm *a)
 {
     return a->fastest_decay > a->highest_frequency;
 }
 
-// Where the next piece of a step ends that goes from `time` to `end` and is taken in
-// parabolas [s], as long as what the last event set going decays faster than the arm
-// vibrates. False where equal pieces do for the rest.
+// Finds where the next piece ends [s] of a step that has been followed to `time` and ends
+// at `end` [s], while the decay that the last event excited is faster than the arm's
+// vibrations. The pieces grow as the decay dies away. False where equal pieces are enough
+// for the rest of the step.
 static bool next_decay_piece(const arm_run *run, double time, double end, double reach,
                              double *next)
 {
@@ -126,7 +134,7 @@ static bool next_decay_piece(const arm_run *run, double time, double end, double
         return false;
     }
 
-    // as long as a piece that the decay allows is shorter than an equal one
+    // the piece that the decay allows, and an equal piece of the rest
     const double since = time - run->recording->state.force.last_jump;
     const double length =
         larger(motion_decay_length(a, reach, since), instant_tolerance(time));
@@ -152,7 +160,8 @@ sample_point arm_run_sample_point(const arm_run *run, double *state)
                           state_quadratures(run->motion, state)[QUADRATURE_FORCE]};
 }
 
-// Continues to an instant within the step. False if the state there cannot be had.
+// Moves the point to an instant [s] within the step. False if the state there cannot be
+// computed.
 static bool move_to(const arm_run *run, sample_point *point, double time)
 {
     double *state = motion_between(&run->arm, run->motion, time, STATE_SENSED);
@@ -163,12 +172,13 @@ static bool move_to(const arm_run *run, sample_point *point, double time)
     return true;
 }
 
-// Takes a piece of the step just made, over which the force has that mean [N].
+// What is done with each piece of a step: it is recorded, or the sensors follow it.
+// `mean` is the mean force over the piece [N].
 typedef status (*piece_taker)(arm_run *run, const sample_point *from,
                               const sample_point *to, double mean);
 
-// Continues to an instant within the step, over this length [s], and hands that piece
-// over.
+// Moves the point to an instant `time` within the step and hands the piece between, which
+// is `length` long [s], over to `take`.
 static status take_piece(arm_run *run, sample_point *point, double time, double length,
                          piece_taker take)
 {
@@ -191,20 +201,25 @@ static status follow_decay(arm_run *run, sample_point *point, double end, double
     return STATUS_OK;
 }
 
-// Whether a force begins with a decay that is over at once: it shows in the slope at the
-// start only, which then says nothing about the mean.
+// Whether a force begins with a decay that is over long before the end of a piece. The
+// decay then shows in the slope at the start alone, which predicts a far larger change
+// over the piece than the rest of the piece has; such a slope says nothing about the
+// mean.
 static bool falls_at_once(value_and_slope first, value_and_slope last, double width)
 {
-    const double shown = fabs(last.value - first.value) + fabs(last.slope) * width;
-    return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
+    const double predicted_change = fabs(first.slope) * width;
+    const double found_change = fabs(last.value - first.value) + fabs(last.slope) * width;
+    return predicted_change > FALLS_AT_ONCE * found_change;
 }
 
-// Cuts the force over the rest of the step just made into equal pieces, `before` being
-// its integral up to there: each has the mean of the cubic through both ends' values and
-// slopes. A step may begin with a decay that is over at once, which only the motion's own
-// integral knows.
-static status cut_equally(const arm_run *run, const force_step *rest, double before,
-                          int count, force_step *kept)
+// Cuts the force over `rest`, the part of the step just made that is still to be
+// recorded, into `count` equal pieces. Each gets the mean of the cubic that has the
+// values and slopes of the force at its ends: (f0 + f1) / 2 + (f0' - f1') width / 12.
+// That mean is wrong where the step begins with a decay that is over at once; the first
+// piece then gets its mean from the motion's own integral, which is `integral_before` [N
+// s] at its start.
+static status cut_equally(const arm_run *run, const force_step *rest,
+                          double integral_before, int count, force_step *pieces)
 {
     motion *m = run->motion;
     value_and_slope at[MOST_PIECES + 1];
@@ -214,7 +229,7 @@ static status cut_equally(const arm_run *run, const force_step *rest, double bef
                  width = (m->step.last - since) / count;
     m->engine->dense_output(&run->arm, m, OUTPUT_FORCE, since, m->step.last, count, at);
 
-    // the mean of each by its ends
+    // each piece with the mean of its cubic
     const double slope_share = width / 12;
     double start = rest->start;
     value_and_slope first = at[0];
@@ -223,44 +238,46 @@ static status cut_equally(const arm_run *run, const force_step *rest, double bef
         const double end = rest->start + (i + 1) * width;
         const double mean =
             (first.value + last.value) / 2 + slope_share * (first.slope - last.slope);
-        kept[i] = (force_step){start, end, first.value, last.value, mean};
+        pieces[i] = (force_step){start, end, first.value, last.value, mean};
         start = end;
         first = last;
     }
-    kept[count - 1].end = rest->end;
+    pieces[count - 1].end = rest->end;
 
-    // of the first by the motion's integral where its slope is that of a decay
+    // the first one by the motion's integral, if it begins with a decay
     if (falls_at_once(at[0], at[1], width)) {
         sample_point end;
-        if (!move_to(run, &end, kept[0].end)) {
+        if (!move_to(run, &end, pieces[0].end)) {
             return STATUS_NOT_FINITE;
         }
-        kept[0].mean = (end.integral - before) / width;
+        pieces[0].mean = (end.integral - integral_before) / width;
     }
     return STATUS_OK;
 }
 
-// Keeps the force over equal pieces of the rest of the step just made.
-static status record_equal_pieces(arm_run *run, const force_step *rest, double before,
-                                  int count)
+// Adds the force over `count` equal pieces of the rest of the step just made to the
+// history of forces.
+static status record_equal_pieces(arm_run *run, const force_step *rest,
+                                  double integral_before, int count)
 {
-    force_step *kept = force_history_extend(forces_of(run), (size_t)count);
-    if (kept == NULL) {
+    force_step *pieces = force_history_extend(forces_of(run), (size_t)count);
+    if (pieces == NULL) {
         return STATUS_NO_MEMORY;
     }
-    return cut_equally(run, rest, before, count, kept);
+    return cut_equally(run, rest, integral_before, count, pieces);
 }
 
-// Keeps the force over a piece of the step.
-static status keep_force(arm_run *run, const sample_point *from, const sample_point *to,
-                         double mean)
+// Adds the force over a piece of the step to the history of forces.
+static status record_piece(arm_run *run, const sample_point *from, const sample_point *to,
+                           double mean)
 {
     const force_step piece = {from->time, to->time, from->at.force, to->at.force, mean};
     return force_history_add(forces_of(run), piece);
 }
 
-// Keeps the force over the step just made, in pieces over which it is nearly a parabola:
-// this many where nothing decays.
+// Adds the force over the step just made to the history of forces, in pieces over which
+// it is nearly a parabola: `pieces` equal ones, but short ones first where a fast decay
+// is under way.
 static status record_force(arm_run *run, const force_step *whole, int pieces)
 {
     const motion *m = run->motion;
@@ -268,25 +285,26 @@ static status record_force(arm_run *run, const force_step *whole, int pieces)
         return force_history_add(forces_of(run), *whole);
     }
 
-    // what an event set going and decays at once, its integral being that of the motion
+    // the short pieces of a fast decay, and what is then left of the step
     force_step rest = *whole;
-    double before = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    double integral_before = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
     if (decays_outrun(&run->arm)) {
         sample_point point = arm_run_sample_point(run, m->trial);
-        TRY(follow_decay(run, &point, whole->end, FORCE_REACH, keep_force));
+        TRY(follow_decay(run, &point, whole->end, FORCE_REACH, record_piece));
         rest.start = point.time;
         rest.first = point.at.force;
-        before = point.integral;
+        integral_before = point.integral;
     }
 
-    // what vibrates
+    // the rest in equal pieces
     if (rest.start > whole->start) {
         const double length = whole->end - rest.start;
         pieces = pieces_of_step(run, length, FORCE_REACH);
-        rest.mean = (state_quadratures(m, m->state)[QUADRATURE_FORCE] - before) / length;
+        const double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+        rest.mean = (integral - integral_before) / length;
     }
     if (pieces > 1) {
-        return record_equal_pieces(run, &rest, before, pieces);
+        return record_equal_pieces(run, &rest, integral_before, pieces);
     }
     return force_history_add(forces_of(run), rest);
 }
@@ -302,37 +320,41 @@ static status sense(arm_run *run, const sample_point *from, const sample_point *
     return STATUS_OK;
 }
 
-// Lets sensors of nothing but the force follow it over equal pieces of the rest of the
-// step.
+// Lets sensors that read nothing but the force follow it in `count` equal pieces from a
+// point to `last`. The pieces come from the engine's force alone, without a state at
+// each, which is faster.
 static status follow_force(arm_run *run, const sample_point *from,
                            const sample_point *last, int count)
 {
     const force_step rest = {from->time, last->time, from->at.force, last->at.force, 0};
-    force_step cut[MOST_PIECES];
-    TRY(cut_equally(run, &rest, from->integral, count, cut));
+    force_step pieces[MOST_PIECES];
+    TRY(cut_equally(run, &rest, from->integral, count, pieces));
     for (int i = 0; i < count; i++) {
-        const sensed_motion first = {.force = cut[i].first}, end = {.force = cut[i].last};
-        sensors_follow(&run->recording->rig->sensors, cut[i].end - cut[i].start, &first,
-                       &end, cut[i].mean);
+        const force_step *piece = &pieces[i];
+        const sensed_motion first = {.force = piece->first}, end = {.force = piece->last};
+        sensors_follow(&run->recording->rig->sensors, piece->end - piece->start, &first,
+                       &end, piece->mean);
     }
     return STATUS_OK;
 }
 
-// Lets the sensors follow the arm from a point to `last`, the force having that mean [N].
+// Lets the sensors follow the arm from a point to `last`, between which the force has
+// that mean [N], in pieces that are short enough for them.
 static status follow_to(arm_run *run, sample_point point, const sample_point *last,
                         double mean)
 {
+    // sensors of the force alone have nothing to follow in flight
     const sensor_parameters *fitted = &run->recording->rig->sensors.p;
     const bool force_only = !fitted->film && !fitted->accelerometer;
     if (force_only && run->motion->trial[SLOT_CONTACT] == 0) {
         return sense(run, &point, last, mean);
     }
 
-    // what an event set going
+    // the short pieces of a fast decay
     const double begin = point.time;
     TRY(follow_decay(run, &point, last->time, SENSOR_REACH, sense));
 
-    // the rest from piece to piece
+    // all but the last of the equal pieces of the rest
     const double start = point.time, length = last->time - start;
     const int pieces = pieces_of_step(run, length, SENSOR_REACH);
     if (force_only && pieces > 1) {
@@ -342,7 +364,7 @@ static status follow_to(arm_run *run, sample_point point, const sample_point *la
         TRY(take_piece(run, &point, start + length * i / pieces, length / pieces, sense));
     }
 
-    // the last piece ends where the way does
+    // the last piece, which has the given mean if it is the only one
     if (point.time > begin) {
         mean = (last->integral - point.integral) / (length / pieces);
     }
@@ -357,7 +379,8 @@ status arm_run_follow_flight(arm_run *run, const sample_point *to)
     return follow_to(run, run->under_way.followed, to, 0);
 }
 
-// Lets the sensors follow the arm over the step just made, or over what is left of it.
+// Lets the sensors follow the arm over the step just made, `whole` being its force. In
+// flight, sensors at rest stay at rest.
 static status follow_with_sensors(arm_run *run, const force_step *whole)
 {
     const motion *m = run->motion;
@@ -366,7 +389,7 @@ static status follow_with_sensors(arm_run *run, const force_step *whole)
         return STATUS_OK;
     }
 
-    // in flight they may have come some way already
+    // a step in flight that outlasts samples has been followed up to the last one
     const sample_point last = arm_run_sample_point(run, m->state);
     if (run->under_way.exists && run->under_way.followed.time > whole->start) {
         return follow_to(run, run->under_way.followed, &last, 0);
@@ -376,8 +399,8 @@ static status follow_with_sensors(arm_run *run, const force_step *whole)
 
 // --- bounds of a force that is not determined ------------------------------------------
 
-// The weight of a point of Simpson's rule over an even number of intervals, by thirds of
-// an interval's length.
+// The weight of point i of Simpson's rule over an even number of intervals, in thirds of
+// an interval's length: 1, 4, 2, 4, ..., 2, 4, 1.
 static int simpson_weight(int i, int intervals)
 {
     if (i == 0 || i == intervals) {
@@ -389,8 +412,8 @@ static int simpson_weight(int i, int intervals)
     return 2;
 }
 
-// The state at a point of the step just made that is cut into equal intervals; NULL if it
-// cannot be had.
+// The state at the end of interval i of the step just made, which is cut into equal
+// intervals; i = 0 is the start of the step. NULL if the state cannot be computed.
 static double *state_at(const arm_run *run, int i, int intervals)
 {
     motion *m = run->motion;
@@ -404,8 +427,9 @@ static double *state_at(const arm_run *run, int i, int intervals)
     return motion_between(&run->arm, m, start + i * length / intervals, STATE_WHOLE);
 }
 
-// Follows the bounds of a force that is not determined, over the step just made:
-// Simpson's rule over its pieces.
+// Integrates the bounds of the force over the step just made by Simpson's rule, and notes
+// the largest, where the force is not determined: where friction and a rigid wall
+// together hold a single link.
 static status follow_bounds(arm_run *run, const force_step *whole)
 {
     motion *m = run->motion;
@@ -415,6 +439,7 @@ static status follow_bounds(arm_run *run, const force_step *whole)
         return STATUS_OK;
     }
 
+    // the rule's points, at pieces that are four times as fine as those of the force
     const double length = whole->end - whole->start;
     const int intervals = 2 * pieces_of_step(run, length, FORCE_REACH / 4);
     for (int i = 0; i <= intervals; i++) {
@@ -423,7 +448,7 @@ static status follow_bounds(arm_run *run, const force_step *whole)
             return STATUS_NOT_FINITE;
         }
 
-        // into the integral, and the largest so far
+        // the integrals, and the largest so far
         const double share = simpson_weight(i, intervals) * length / (3 * intervals);
         const force_bounds at = motion_force_bounds(&run->arm, m, state);
         record->in_window.low += share * at.low;

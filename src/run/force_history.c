@@ -27,15 +27,15 @@ status force_history_add(shared_array *h, force_step step)
     return STATUS_OK;
 }
 
-// The last instant within a step at which the force is `edge`, as a share of it; negative
-// if none.
+// The last instant within a step at which the force equals `edge` [N], as a share of the
+// step's length: the later root in [0, 1] of curve s^2 + slope s + first - edge. Negative
+// if there is none.
 static double last_crossing(const force_step *step, double edge)
 {
     const step_parabola force = step_parabola_of(step);
     const double curve = force.curve, slope = force.slope, offset = force.first - edge;
-    double latest = -1;
 
-    // a straight line
+    // the force is nearly a straight line
     if (fabs(curve) < 1e-12 * (fabs(slope) + fabs(offset))) {
         double s = slope != 0 ? -offset / slope : -1;
         if (s <= 1) {
@@ -44,7 +44,8 @@ static double last_crossing(const force_step *step, double edge)
         return -1;
     }
 
-    // the later one of the parabola's two crossings, which are NaN if there are none
+    // the later one of the parabola's two roots, which are NaN if it has none
+    double latest = -1;
     double root = sqrt(slope * slope - 4 * curve * offset);
     for (int sign = -1; sign <= 1; sign += 2) {
         double s = (sign * root - slope) / (2 * curve);
@@ -94,17 +95,18 @@ double force_settled_since(const shared_array *h, double final)
 
 // --- the largest mean over a sliding window --------------------------------------------
 
-// One end of the window, on its way through the run.
+// One end of the window, which moves through the run: its front, which is the later end,
+// or its back.
 typedef struct window_end {
-    double time;     // of the window's front [s]
-    size_t step;     // that it lies in
-    double before;   // integral of the force up to that step [N s]
-    size_t event;    // next one whose impulse it has not passed
-    double impulses; // of those that it has passed [N s]
+    double time;     // of the window's front, for both ends [s]
+    size_t step;     // the step that this end lies in
+    double before;   // integral of the force up to the start of that step [N s]
+    size_t event;    // the next event, whose impulse this end has not passed
+    double impulses; // sum of the impulses that this end has passed [N s]
 } window_end;
 
-// Integral of the force from the step's start to an instant within it [N s]; zero over no
-// length.
+// Integral of the force from the start of a step to an instant [s] within it [N s]: with
+// the share s of the step's length h, h (first s + slope s^2 / 2 + curve s^3 / 3).
 static double integral_within(const force_step *step, double time)
 {
     double length = step->end - step->start;
@@ -113,15 +115,21 @@ static double integral_within(const force_step *step, double time)
     return length * s * (p.first + s * (p.slope / 2 + s * p.curve / 3));
 }
 
-// Moves an end of the window on, which stands `behind` the front's time [s]. Impulses at
-// the instant itself are passed or not. Instants are compared where the front meets them,
-// by the same sums as in next_change: rounded otherwise, the end could stay in a step
-// that it has left.
+// Whether an end of the window, moved to an instant, passes impulses that act right
+// there.
+typedef enum impulse_side { BEFORE_IMPULSES, PAST_IMPULSES } impulse_side;
+
+// Moves an end of the window so that the front is at `time` [s]. `behind` is how far this
+// end is behind the front [s]: zero, or the window's length. Instants are compared as
+// times of the front, by the same sums as in next_change: with other rounding, the end
+// could stay in a step that it has left.
 static void advance(const run_result *r, window_end *w, double time, double behind,
-                    bool past_impulses)
+                    impulse_side side)
 {
     const force_step *steps = force_steps(&r->history.forces);
     const trace *t = &r->trace;
+
+    // past whole steps
     while (w->step + 1 < r->history.forces.count && steps[w->step].end + behind <= time) {
         w->before += steps[w->step].mean * (steps[w->step].end - steps[w->step].start);
         w->step++;
@@ -131,7 +139,7 @@ static void advance(const run_result *r, window_end *w, double time, double behi
     for (; w->event < t->event_count; w->event++) {
         const event *e = &t->events[w->event];
         const double met = e->time + behind;
-        if (!(met < time || (past_impulses && met == time))) {
+        if (!(met < time || (side == PAST_IMPULSES && met == time))) {
             break;
         }
         const bool strikes =
@@ -159,7 +167,7 @@ static double next_change(const run_result *r, const window_end *front,
     const force_step *steps = force_steps(&r->history.forces);
     double next = fmin(steps[front->step].end, steps[back->step].end + window);
 
-    // events of both ends, the back's as the front meets them later
+    // the next event of each end; the back meets one a window's length after the front
     const trace *t = &r->trace;
     if (front->event < t->event_count) {
         next = fmin(next, t->events[front->event].time);
@@ -170,9 +178,10 @@ static double next_change(const run_result *r, const window_end *front,
     return next;
 }
 
-// Adds the parabola a + b u + c u^2 of a step's force to the sums of such, u being the
-// time since `from` [s].
-static void add_parabola(double *sums, const force_step *step, double from, double sign)
+// Adds the coefficients of a step's force, times `sign`, to `sums`: the force is the
+// parabola a + b u + c u^2 of the time u since `from` [s], to which step_parabola is
+// expanded from the share s of the step.
+static void add_parabola(double sums[3], const force_step *step, double from, double sign)
 {
     const double length = step->end - step->start, s = (from - step->start) / length;
     const step_parabola p = step_parabola_of(step);
@@ -181,23 +190,24 @@ static void add_parabola(double *sums, const force_step *step, double from, doub
     sums[2] += sign * p.curve / (length * length);
 }
 
-// The largest integral over the window with its front strictly between `from` and `to`,
-// where the forces at front and back are equal; -HUGE_VAL if they are nowhere.
+// The largest integral [N s] over a window whose front lies strictly between the present
+// one and `to` [s], both ends staying in their steps. Its derivative is the force at the
+// front less that at the back, so that the maximum is where both are equal; -HUGE_VAL if
+// they are equal nowhere.
 static double largest_between(const run_result *r, const window_end *front,
                               const window_end *back, double window, double to)
 {
-    // both parabolas as ones of the time since `from`: difference a + b u + c u^2
+    // the difference of both forces as a parabola a + b u + c u^2 of the time u since now
     const force_step *steps = force_steps(&r->history.forces);
     double from = front->time, sums[3] = {0}, largest = -HUGE_VAL;
     add_parabola(sums, &steps[front->step], from, 1);
     add_parabola(sums, &steps[back->step], from - window, -1);
 
-    // its roots, of which those that are none are no numbers: between them the integral
-    // only grows or only falls
+    // its real roots in the form 2 a / (-b +- sqrt(b^2 - 4 a c)), which also serves c =
+    // 0; without real roots u is NaN, and no comparison holds
     double root = sqrt(sums[1] * sums[1] - 4 * sums[2] * sums[0]);
     for (int sign = -1; sign <= 1; sign += 2) {
-        double u =
-            2 * sums[0] / (sign * root - sums[1]); // 2 a / (...) stands c = 0 as well
+        double u = 2 * sums[0] / (sign * root - sums[1]);
         if (u > 0 && from + u < to) {
             largest = fmax(largest, integral_to(r, front, from + u) -
                                         integral_to(r, back, from + u - window));
@@ -206,11 +216,11 @@ static double largest_between(const run_result *r, const window_end *front,
     return largest;
 }
 
-// The instant [s] up to which no window that ends in the front's step or a later one can
-// hold more than `largest` [N s]; -HUGE_VAL if one that ends in the front's step can. It
-// goes from the back's step on over steps without an event and without a force large
-// enough for more. Steps before
-// *bounded were checked already.
+// The instant [s] up to which the window may be moved because no window on the way can
+// have an integral above `largest` [N s]; -HUGE_VAL if that is not certain even within
+// the front's step. A window that lies within steps without an event has at most the
+// integral (largest force) x (window), so steps are checked from the back's on until one
+// exceeds that. *bounded is the first step that has not passed the check.
 static double holds_no_more(const run_result *r, const window_end *front,
                             const window_end *back, double window, double largest,
                             size_t *bounded)
@@ -241,13 +251,17 @@ double force_largest_mean(const run_result *result, double from, double window)
         return (double)NAN;
     }
 
+    // the window slides over the run, from one instant to the next at which an end of it
+    // meets a step's end or an impulse
     window_end front = {0}, back = {0};
     double largest = -HUGE_VAL;
     size_t bounded = 0;
     for (double time = from + window;;) {
-        // at the instant itself, impulses on both edges counting
-        advance(result, &front, time, 0, true);
-        advance(result, &back, time, window, false);
+        // the window at this instant, with the impulses on both of its edges
+        advance(result, &front, time, 0, PAST_IMPULSES);
+        advance(result, &back, time, window, BEFORE_IMPULSES);
+
+        // windows that cannot be the largest are skipped
         if (time < end) {
             const double passed =
                 holds_no_more(result, &front, &back, window, largest, &bounded);
@@ -256,14 +270,16 @@ double force_largest_mean(const run_result *result, double from, double window)
                 continue;
             }
         }
+
+        // its integral
         largest = fmax(largest, integral_to(result, &front, time) -
                                     integral_to(result, &back, time - window));
         if (time >= end) {
             return largest / window;
         }
 
-        // behind it, up to the next one
-        advance(result, &back, time, window, true);
+        // windows between this instant and the next change of a step or an impulse
+        advance(result, &back, time, window, PAST_IMPULSES);
         double next = fmin(next_change(result, &front, &back, window), end);
         largest = fmax(largest, largest_between(result, &front, &back, window, next));
         if (next > time) {

@@ -6,20 +6,22 @@
 #include "src/rig/first_order_lag.h"
 #include "src/run/run_result.h"
 
-// After so many time constants nothing is left of what a lag held, to the last digit.
+// After this many time constants the value that a lag had before makes no difference in
+// the last digit (exp(-40) = 4e-18).
 #define FORGOTTEN 40
 
-// The sensor on its way through the run. Of the steps that bring nothing larger it knows
-// only that they do not: it follows them where its value is needed after all.
+// How far the sensor has come through the run. Steps whose force cannot raise the largest
+// reading are skipped, and followed later if the sensor's value is needed after them.
 typedef struct sensor_passage {
     const force_step *steps;
     first_order_lag lag;
-    size_t followed; // the steps before this one
-    size_t event;    // the next one to look at
-    double largest;  // value so far [N]
+    size_t followed; // the first step that the lag has not followed
+    size_t event;    // the next event to look at
+    double largest;  // reading so far [N]
 } sensor_passage;
 
-// The force over a step, up to an instant [s] within or behind it.
+// The force over a step from its start to an instant [s], or to its end if that is
+// earlier, as the lag takes it: length, both ends and mean.
 static lag_input force_until(const force_step *step, double until)
 {
     const double length = step->end - step->start;
@@ -32,9 +34,11 @@ static lag_input force_until(const force_step *step, double until)
                        f.first + u * (f.slope / 2 + u * f.curve / 3)};
 }
 
-// Follows the force up to the beginning of a step, an instant [s].
+// Lets the lag follow the force over the steps that were skipped, up to the beginning of
+// a step at `begin` [s]. Of a long way only the last FORGOTTEN time constants count.
 static void follow_to_step(sensor_passage *s, size_t step, double begin)
 {
+    // where to start: at the first step that is not forgotten, with any value
     size_t from = step;
     const double remembered = begin - FORGOTTEN * s->lag.time_constant;
     while (from > s->followed && s->steps[from - 1].end > remembered) {
@@ -43,6 +47,8 @@ static void follow_to_step(sensor_passage *s, size_t step, double begin)
     if (from > s->followed) {
         s->lag.value = 0;
     }
+
+    // from there on
     for (; from < step; from++) {
         const force_step *f = &s->steps[from];
         lag_follow(&s->lag, &(lag_input){f->end - f->start, f->first, f->last, f->mean});
@@ -50,8 +56,8 @@ static void follow_to_step(sensor_passage *s, size_t step, double begin)
     s->followed = step;
 }
 
-// Takes the impulses up to an instant [s] that lies at the beginning of a step, or ends
-// the run.
+// Lets the lag take the impulses of impacts up to an instant [s], at which `step` begins
+// or the run ends.
 static void take_impulses(sensor_passage *s, const trace *t, size_t step, double until)
 {
     for (; s->event < t->event_count && t->events[s->event].time <= until; s->event++) {
@@ -64,7 +70,8 @@ static void take_impulses(sensor_passage *s, const trace *t, size_t step, double
     }
 }
 
-// Takes a step that may bring a larger value: at its end, or where the lag turns in it.
+// Follows a step in which the reading may become the largest: where it turns, or at the
+// step's end.
 static void take_step(sensor_passage *s, size_t step, double until)
 {
     const lag_input force = force_until(&s->steps[step], until);
@@ -78,9 +85,11 @@ static void take_step(sensor_passage *s, size_t step, double until)
     s->followed = step + 1;
 }
 
-// The step at whose beginning the next impulse acts, none: `count`, that of all steps.
+// The step at whose beginning the next impulse acts; `count`, the number of all steps, if
+// there is none.
 static size_t next_struck_step(sensor_passage *s, const trace *t, size_t count)
 {
+    // the next impact
     const event *e = t->events + s->event;
     for (; s->event < t->event_count && e->kind != EVENT_IMPACT; e++) {
         s->event++;
@@ -89,7 +98,7 @@ static size_t next_struck_step(sensor_passage *s, const trace *t, size_t count)
         return count;
     }
 
-    // the first step that does not begin before it lies in [low, high]
+    // bisection: the first step that does not begin before the impact lies in [low, high]
     size_t low = s->followed, high = count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
@@ -102,8 +111,8 @@ static size_t next_struck_step(sensor_passage *s, const trace *t, size_t count)
     return low;
 }
 
-// A force that no step of the run exceeds [N]: of one that delivers an impulse nothing is
-// known.
+// A force that no step of the run exceeds [N]. Of a step that delivers an impulse nothing
+// is known.
 static double largest_force(const run_result *result)
 {
     const trace *t = &result->trace;
