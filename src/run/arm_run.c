@@ -23,14 +23,15 @@ enum { MOST_EVENTS_AT_ONCE = 100 };
 
 // --- at present ------------------------------------------------------------------------
 
-// What the sensors are fixed to at an instant [s] within the step under way: most see
-// nothing but the hub, and no force. False if the state there cannot be had.
+// Computes the motion that the sensors measure at an instant [s] within the step under
+// way, which is in flight: there is no force, and most sensors measure the hub alone.
+// False if the state there cannot be computed.
 static bool sensed_within(const arm_run *run, double time, sensed_motion *at)
 {
     motion *m = run->motion;
     const sensor_parameters *fitted = &run->recording->rig->sensors.p;
 
-    // film and accelerometer see the whole arm
+    // film and accelerometer measure the whole arm
     *at = (sensed_motion){.force = 0};
     if (fitted->film || fitted->accelerometer) {
         double *state = motion_between(&run->arm, m, time, STATE_WHOLE);
@@ -40,6 +41,7 @@ static bool sensed_within(const arm_run *run, double time, sensed_motion *at)
         *at = arm_run_sensed_motion(run, state);
     }
 
+    // the hub
     const value_and_slope hub =
         motion_output(&run->arm, m, OUTPUT_HUB, time - m->state[SLOT_TIME]);
     at->angle = hub.value;
@@ -47,15 +49,16 @@ static bool sensed_within(const arm_run *run, double time, sensed_motion *at)
     return true;
 }
 
-// What the sensors are fixed to at present.
-static sensed_motion present_sensed(const void *of)
+// The motion that the sensors measure at present.
+static sensed_motion present_sensed(const void *model_run)
 {
-    const arm_run *run = of;
+    const arm_run *run = model_run;
     if (!run->under_way.exists) {
         return arm_run_sensed_motion(run, run->motion->state);
     }
 
-    // where the sensors are already, or on the way from there
+    // within the step under way: the point that the sensors have been followed to, or the
+    // present instant beyond it
     const double now = run->under_way.time;
     sensed_motion at;
     if (run->under_way.followed.time != now && sensed_within(run, now, &at)) {
@@ -73,8 +76,8 @@ static bool segment_is_over(const arm_run *run)
     return !(arm_run_time(run) < end);
 }
 
-// Samples the sensors and changes the command where the time for it has come. A step
-// under way continues unless something changes.
+// Lets the rig sample its sensors and change its command, if it is due at this instant. A
+// step under way ends here only if the command changes.
 static status run_rig(arm_run *run, fault *f)
 {
     rig *on = run->recording->rig;
@@ -92,8 +95,8 @@ static status run_rig(arm_run *run, fault *f)
     return arm_run_apply_sample(run, changed);
 }
 
-// Lets the rig act at the start, and records the row there even where its first sample
-// fails.
+// Lets the rig act at the start and records the first row, also where the rig's first
+// sample fails.
 static status begin_rows(arm_run *run, fault *f)
 {
     const status failed = run_rig(run, f);
@@ -104,15 +107,17 @@ static status begin_rows(arm_run *run, fault *f)
     return recorded;
 }
 
-// How far the motion may go by itself from here. Steps are cut, and not planned for it,
-// at an action of the script and where the window of the steady force begins.
+// Sets how far the motion may go by itself from here. The next sample of the rig and the
+// end of the run end the segment, and the choice of steps takes them into account. The
+// next action of the script and the beginning of the window of the steady force only cut
+// the step that reaches them.
 static void begin_segment(arm_run *run, double window)
 {
     const recording *r = run->recording;
     const scenario *s = r->scenario;
     motion *m = run->motion;
 
-    // steps are cut
+    // where steps are cut
     const int next = r->state.next_action;
     m->record.tstop = HUGE_VAL;
     if (next < s->action_count) {
@@ -122,20 +127,22 @@ static void begin_segment(arm_run *run, double window)
         m->record.tstop = smaller(window, m->record.tstop);
     }
 
-    // steps are planned
+    // what steps are planned for
     run->segment = (run_segment){.stop = s->parameters.run.duration, .last_event = -1};
     if (r->rig != NULL) {
         run->segment.stop = smaller(rig_next_time(r->rig), run->segment.stop);
     }
 }
 
-// arm_run_prepare_step where a segment is over, or the run is to begin; apart from it,
-// which then has little to do for most steps.
+// arm_run_prepare_step at the start of the run and at the end of a segment. A function of
+// its own, so that the few instructions which most steps need stay inline.
 static __attribute__((noinline)) status prepare_segment(arm_run *run, bool *ended,
                                                         fault *f)
 {
     const double duration = run->recording->scenario->parameters.run.duration;
     const double window = larger(duration - STEADY_WINDOW, 0);
+
+    // the start
     if (!arm_run_has_first_row(run)) {
         TRY(begin_rows(run, f));
     }
@@ -172,7 +179,8 @@ status arm_run_prepare_step(arm_run *run, bool *ended, fault *f)
 
 // --- the step under way ----------------------------------------------------------------
 
-// Whether the arm flies under a rig, in internal steps that outlast the run's.
+// Whether the next step may continue beyond samples of the rig: in flight, with an engine
+// that computes states within its steps.
 static bool flies_beyond_samples(const arm_run *run)
 {
     const motion *m = run->motion;
@@ -190,7 +198,7 @@ void arm_run_begin_step(arm_run *run)
         return;
     }
 
-    // as far as its step lasts
+    // as far as the step lasts, at most to the end of the run; it is under way then
     motion_examine_step(&run->arm, m, run->segment.stop,
                         run->recording->scenario->parameters.run.duration, step);
     memcpy(m->trial, m->state, (size_t)m->size * sizeof *m->state);
@@ -200,7 +208,7 @@ void arm_run_begin_step(arm_run *run)
                                       .followed = arm_run_sample_point(run, m->state)};
 }
 
-// The sensors follow the arm to an instant [s] within the step under way.
+// Lets the sensors follow the arm to an instant [s] within the step under way.
 static status follow_to_sample(arm_run *run, double time)
 {
     sample_point to = {.time = time, .integral = run->under_way.followed.integral};
@@ -212,8 +220,8 @@ static status follow_to_sample(arm_run *run, double time)
     return s;
 }
 
-// Continues to an instant [s] within the step under way, with rows and, where the rig
-// acts there, sensors.
+// Takes the run to an instant [s] within the step under way: records the rows up to there
+// and, if the rig samples there, lets the sensors follow.
 static status continue_within_step(arm_run *run, double time, fault *f)
 {
     status s = arm_run_record_rows_to(run, time);
@@ -221,7 +229,7 @@ static status continue_within_step(arm_run *run, double time, fault *f)
         s = follow_to_sample(run, time);
     }
 
-    // the run is there
+    // the run has come there
     if (s == STATUS_OK) {
         run->under_way.time = time;
         if (recording_asked_to_stop(run->recording)) {
@@ -248,7 +256,7 @@ static status finish_step(arm_run *run, motion_report *report)
         return STATUS_OK;
     }
 
-    // events at one instant are counted
+    // apply the event, and count how many come without time passing between them
     const status applied = arm_run_apply_event(run, report);
     const double now = run->motion->state[SLOT_TIME];
     if (now - segment->last_event < SAME_EVENT_TIME) {
@@ -274,7 +282,7 @@ static status make_step(arm_run *run, double until, fault *f)
     }
     s = finish_step(run, &report);
 
-    // reasons to end here
+    // the run may have to end here: on request, or because time no longer passes
     if (s == STATUS_OK && recording_asked_to_stop(r)) {
         s = STATUS_STOPPED;
     }
@@ -297,7 +305,8 @@ status arm_run_step(arm_run *run, double until, fault *f)
         return fault_no_memory(f);
     }
 
-    // within the step under way
+    // a step that continues beyond `next`, the end of the segment or `until`, is only
+    // observed there
     if (!run->under_way.exists && flies_beyond_samples(run)) {
         arm_run_begin_step(run);
     }
@@ -310,14 +319,16 @@ status arm_run_step(arm_run *run, double until, fault *f)
         return continue_within_step(run, next, f);
     }
 
-    // or to the end of one; where it stops by itself it is that of a run that nobody
-    // steps, to the last bit
+    // any other step is made to its end. It is cut at `until`, but not planned for that,
+    // so that a step which ends earlier by itself equals that of an uninterrupted run to
+    // the last bit
     if (until < run->segment.stop && !run->under_way.exists) {
         m->record.tstop = smaller(m->record.tstop, until);
     }
     const status s = make_step(run, run->segment.stop, f);
 
-    // steps that the motion chose are counted, not instants that a program asks for
+    // the monitor of ever shorter steps counts those that the motion chose; a step that a
+    // program has cut begins the count again
     if (!(m->state[SLOT_TIME] < until)) {
         run->zeno = zeno_monitor_begin();
     }
@@ -337,7 +348,7 @@ status arm_run_end_step(arm_run *run, fault *f)
 
 // --- the beginning ---------------------------------------------------------------------
 
-// Says in the summary that the steps asked for are too long for the arm.
+// Says in the summary that method.step is too long for the fastest modes of the arm.
 static void remark_on_long_steps(const arm_run *run)
 {
     summary *s = &run->recording->result->summary;
@@ -349,18 +360,22 @@ static void remark_on_long_steps(const arm_run *run)
                   run->arm.highest_frequency, run->motion->engine->name);
 }
 
-// Puts the arm where it starts.
+// Begins the run at its initial state: names the method, opens the trace and puts the arm
+// where it starts, possibly in contact.
 static status begin(arm_run *run, fault *f)
 {
     recording *r = run->recording;
     motion *m = run->motion;
     const initial_parameters *initial = &r->scenario->parameters.initial;
+
+    // the method, and whether it suits the arm
     summary *s = &r->result->summary;
     memccpy(s->method, m->engine->name, 0, sizeof s->method - 1);
     if (motion_unresolved(&run->arm, m)) {
         remark_on_long_steps(run);
     }
 
+    // the arm at its start, which must be in front of the wall
     TRY(recording_open_trace(r, run->arm.dof, f));
     motion_start(&run->arm, m, initial->angle, initial->velocity);
     if (m->wall_moves && m->state[SLOT_GAP] < -DEEPEST) {
@@ -406,8 +421,8 @@ status arm_run_open(arm_run *run, recording *r, motion *spare, fault *f)
 
 // --- the end ---------------------------------------------------------------------------
 
-// Sums the run up where it stands, as if it ended here: a step that fails in this does
-// not end the run, but may be lost.
+// Sums the run up where it stands, as if it ended here. If the step under way fails in
+// being ended, the summary is that of what came before; only missing memory is reported.
 static void end_and_summarise(arm_run *run, status failed)
 {
     fault none;
@@ -415,35 +430,41 @@ static void end_and_summarise(arm_run *run, status failed)
     arm_run_summarise(run, failed);
 }
 
-static void sum_up(void *of, status failed)
+// Sums up a run that will continue. Ending the step under way changes the run, so that
+// everything it changes is saved before and put back after, apart from the summary.
+static void sum_up(void *model_run, status failed)
 {
-    arm_run *run = of;
+    arm_run *run = model_run;
     if (!run->under_way.exists) {
         end_and_summarise(run, failed);
         return;
     }
 
-    // all that the end of the step under way changes, but for what is summed up
-    sensors *felt = &run->recording->rig->sensors;
-    size_t *forces = &run->recording->result->history.forces.count;
-    const run_segment segment = run->segment;
-    const step_under_way under_way = run->under_way;
-    const zeno_monitor zeno = run->zeno;
-    const motion moving = *run->motion;
-    const sensors felt_before = *felt;
-    const size_t forces_before = *forces;
+    // the run's parts, its sensors and its history of forces as they are
+    sensors *rig_sensors = &run->recording->rig->sensors;
+    size_t *force_count = &run->recording->result->history.forces.count;
+    const run_segment segment_before = run->segment;
+    const step_under_way under_way_before = run->under_way;
+    const zeno_monitor zeno_before = run->zeno;
+    const motion motion_before = *run->motion;
+    const sensors sensors_before = *rig_sensors;
+    const size_t force_count_before = *force_count;
     end_and_summarise(run, failed);
 
-    // and back to where the step started, which is where it left that
+    // the motion goes back to the start of the step under way, which the end of the step
+    // has left in `trial`
     const double *start = run->motion->trial;
-    *run->motion = moving;
-    memmove(moving.state, start, (size_t)moving.size * sizeof *start);
-    memmove(moving.trial, start, (size_t)moving.size * sizeof *start);
-    run->segment = segment;
-    run->under_way = under_way;
-    run->zeno = zeno;
-    *felt = felt_before;
-    *forces = forces_before;
+    const size_t state_bytes = (size_t)motion_before.size * sizeof *start;
+    *run->motion = motion_before;
+    memmove(motion_before.state, start, state_bytes);
+    memmove(motion_before.trial, start, state_bytes);
+
+    // and so do the others; the present state is computed again
+    run->segment = segment_before;
+    run->under_way = under_way_before;
+    run->zeno = zeno_before;
+    *rig_sensors = sensors_before;
+    *force_count = force_count_before;
     arm_run_present_state(run);
 }
 
@@ -460,39 +481,40 @@ motion *arm_run_finish(arm_run *run, status failed)
 
 // --- the state as bytes ----------------------------------------------------------------
 
-// Where the run stands between its stops; what the motion remembers follows.
+// The part of a saved state that says where the run stands within its segment; the bytes
+// of the motion follow.
 typedef struct saved_place {
     run_segment segment;
     step_under_way under_way;
 } saved_place;
 
-static size_t saved_size(const void *of)
+static size_t saved_size(const void *model_run)
 {
-    const arm_run *run = of;
+    const arm_run *run = model_run;
     return sizeof(saved_place) + motion_saved_size(run->motion);
 }
 
-static void save(const void *of, void *bytes)
+static void save(const void *model_run, void *bytes)
 {
-    const arm_run *run = of;
+    const arm_run *run = model_run;
     saved_place place;
-    memset(&place, 0, sizeof place); // whose gaps have the same bytes, too
+    memset(&place, 0, sizeof place); // bytes between its fields are zero, too
     place.segment = run->segment;
     place.under_way = run->under_way;
     memcpy(bytes, &place, sizeof place);
     motion_save(run->motion, (char *)bytes + sizeof place);
 }
 
-static void restore(void *of, const void *bytes)
+static void restore(void *model_run, const void *bytes)
 {
-    arm_run *run = of;
+    arm_run *run = model_run;
     saved_place place;
     memcpy(&place, bytes, sizeof place);
-    arm_run_bind_arm(run); // to parameters and voltage of then
+    arm_run_bind_arm(run); // to the saved parameters and voltage, which are in force
     motion_restore(&run->arm, run->motion, (const char *)bytes + sizeof place);
     run->zeno = zeno_monitor_begin();
 
-    // the step under way, looked at again as it was when it was begun
+    // the step under way is begun again as it was then
     if (place.under_way.exists) {
         run->under_way.exists = false;
         run->segment.stop = place.under_way.begun_for;
@@ -535,9 +557,9 @@ static double present_time(const void *run)
     return arm_run_time(run);
 }
 
-static bool has_ended(const void *of)
+static bool has_ended(const void *model_run)
 {
-    const arm_run *run = of;
+    const arm_run *run = model_run;
     return !(arm_run_time(run) < run->recording->scenario->parameters.run.duration);
 }
 
@@ -546,9 +568,9 @@ static sample present_row(const void *run)
     return arm_run_row(run, arm_run_present_state(run));
 }
 
-static const double *present_angles(const void *of, int *angle_count)
+static const double *present_angles(const void *model_run, int *angle_count)
 {
-    const arm_run *run = of;
+    const arm_run *run = model_run;
     *angle_count = run->motion->dof;
     return state_angles(run->motion, arm_run_present_state(run));
 }

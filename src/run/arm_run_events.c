@@ -7,16 +7,19 @@
 #include "src/run/arm_run.h"
 #include "src/run/recording.h"
 
-// What swings off the wall sooner than this after the start [s], with no larger force
-// before [N], does so at once; a derivative higher than the second decides.
+// An arm that starts on the wall and leaves it within AT_ONCE [s], without a force above
+// NO_FORCE [N] until then, was never in contact: it only takes that long to show, as a
+// derivative of the gap higher than the second moves it.
 #define AT_ONCE  1e-6
 #define NO_FORCE 1e-9
 
-// A face pushed in by less is back [m].
+// The face of a wall has returned to where it rests if it is pushed in by less [m].
 #define FACE_RETURNED 1e-9
 
 // --- events of the motion --------------------------------------------------------------
 
+// Adds an event at the motion's present instant to the trace; an impact has the numbers
+// of the report.
 static status record_event(recording *r, const motion *m, event_kind kind,
                            const motion_report *report)
 {
@@ -30,7 +33,8 @@ static status record_event(recording *r, const motion *m, event_kind kind,
     return trace_add_event(&r->result->trace, e);
 }
 
-// The first contact, and with it the first pulse, begins now.
+// Notes that the run's first contact, and with it its first pulse, begins now. Force
+// bounds and peak are counted from here.
 static void open_first_pulse(arm_run *run, double impulse)
 {
     recording *r = run->recording;
@@ -42,8 +46,8 @@ static void open_first_pulse(arm_run *run, double impulse)
     motion_reset_peak(run->motion);
 }
 
-// Whether it is not the last link that meets a point but its line, on the other side of
-// its base.
+// Whether a point stops the line of the last link behind the link's base, where there is
+// no link: the component of base to point along the link is negative there.
 static bool touches_behind_link(const arm_run *run)
 {
     const arm *a = &run->arm;
@@ -51,20 +55,23 @@ static bool touches_behind_link(const arm_run *run)
         return false;
     }
     const double *q = state_angles(run->motion, run->motion->state);
-    const double last = q[a->dof - 1];
-    double x, y;
-    chain_node(a, q, a->links - 1, &x, &y);
-    return (a->wall.x - x) * inline_cos(last) + (a->wall.y - y) * inline_sin(last) < 0;
+    const double link_angle = q[a->dof - 1];
+    double base_x, base_y;
+    chain_node(a, q, a->links - 1, &base_x, &base_y);
+    return (a->wall.x - base_x) * inline_cos(link_angle) +
+               (a->wall.y - base_y) * inline_sin(link_angle) <
+           0;
 }
 
-// Whether an arm that comes to the wall meets it where it stands at rest, not a face on
-// its way back.
-static bool lands(const motion *m)
+// Whether an arm that comes to the wall meets its face at rest: a face with a mass may
+// still be on its way back from an earlier contact.
+static bool meets_face_at_rest(const motion *m)
 {
     return m->state[SLOT_FACE] < FACE_RETURNED;
 }
 
-// The landing, and with it its pulse, begins now: its peak counts from here.
+// Notes that the landing, the contact that ends the first free flight, begins now. The
+// motion's record of the peak begins again, so that the peak before is put aside.
 static void open_landing(arm_run *run, double impulse)
 {
     contact_history *contact = &run->recording->state.contact;
@@ -101,14 +108,16 @@ status arm_run_begin_in_contact(arm_run *run)
     contact->earlier_peak = -1;
     contact->landing.before.angle[0] = (double)NAN;
 
-    // held by a rigid wall, or on one that gives: what goes into that is in contact,
-    // however hard the wall throws it back
+    // an arm at a wall that gives leaves it unless it moves into it, or is not pushed
+    // away
     const motion *m = run->motion;
     const bool leaves = m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 &&
                         m->state[SLOT_GAP_ACCELERATION] > 0;
     if (m->state[SLOT_CONTACT] == 0 || leaves) {
         return STATUS_OK;
     }
+
+    // it is in its first contact
     const motion_report none = {.event = MOTION_TOUCH, .holds = true};
     open_first_pulse(run, 0);
     if (touches_behind_link(run)) {
@@ -150,7 +159,7 @@ static event_kind kind_of(const motion *m, const motion_report *report)
                                        [MOTION_RELEASE] = EVENT_RELEASE,
                                        [MOTION_STICK] = EVENT_STICK,
                                        [MOTION_SLIP] = EVENT_SLIP};
-    // the hub came to rest: does friction hold it?
+    // a hub that came to rest and is not held by friction turns back
     bool turns_back =
         report->event == MOTION_STICK && m->state[SLOT_FRICTION] != HUB_STICK;
     if (turns_back) {
@@ -159,19 +168,24 @@ static event_kind kind_of(const motion *m, const motion_report *report)
     return kinds[report->event];
 }
 
-// Adds the events that one which has just been recorded brought with it, or a change from
-// outside: what was in contact no longer is, friction holds or lets go the hub.
+// Records the further events that an event or a change from outside has brought with it:
+// the arm is released from the wall, or friction begins or ceases to hold the hub.
+// `before` is the state of contact and friction until then.
 static status record_consequences(arm_run *run, contact_state before,
                                   const motion_report *report)
 {
     recording *r = run->recording;
     const motion *m = run->motion;
-    const bool holds = m->state[SLOT_FRICTION] == HUB_STICK,
-               held = before.friction == HUB_STICK;
+
+    // the wall
     const bool contact = m->state[SLOT_CONTACT] != 0;
     if (before.contact && !contact && report->event != MOTION_RELEASE) {
         TRY(record_event(r, m, EVENT_RELEASE, report));
     }
+
+    // friction at the hub
+    const bool held = before.friction == HUB_STICK;
+    const bool holds = m->state[SLOT_FRICTION] == HUB_STICK;
     if (holds && !held && report->event != MOTION_STICK) {
         TRY(record_event(r, m, EVENT_STICK, report));
     }
@@ -182,12 +196,15 @@ static status record_consequences(arm_run *run, contact_state before,
     return STATUS_OK;
 }
 
-// The arm comes to the wall: a flight ends, at the first time the pulse begins.
+// Records that the arm has come to the wall: a flight ends there, the landing and the
+// first pulse may begin, and an impact after which the arm stays begins a contact.
 static status record_touch(arm_run *run, const motion_report *report)
 {
     recording *r = run->recording;
     contact_history *contact = &r->state.contact;
     summary *s = &r->result->summary;
+
+    // how it came there
     if (touches_behind_link(run)) {
         contact->touches_behind_link++;
     }
@@ -195,7 +212,8 @@ static status record_touch(arm_run *run, const motion_report *report)
         s->separations++;
     }
 
-    if (contact->landing.time == 0 && lands(run->motion)) {
+    // what begins with it
+    if (contact->landing.time == 0 && meets_face_at_rest(run->motion)) {
         open_landing(run, report->impulse);
     }
     if (isnan(s->first_contact_s)) {
@@ -207,8 +225,9 @@ static status record_touch(arm_run *run, const motion_report *report)
     return STATUS_OK;
 }
 
-// The arm has left the wall: for the first time the pulse ends. What left it at once,
-// without a touch, has its first contact still to come.
+// Records that the arm has left the wall, which ends the landing and the first pulse. An
+// arm that started on the wall and left it at once, without pressing on it, has its first
+// contact still to come.
 static void record_separation(arm_run *run, bool touched_now)
 {
     contact_history *contact = &run->recording->state.contact;
@@ -230,8 +249,8 @@ static bool touches(const motion_report *report)
     return report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
 }
 
-// Puts an event that has just been applied into trace and summary; `before`: the contact
-// state that it ended.
+// Records in trace and summary an event that has just been applied to the motion.
+// `before` is the state of contact and friction that the event ended.
 static status record_applied_event(arm_run *run, contact_state before,
                                    const motion_report *report)
 {
@@ -239,8 +258,8 @@ static status record_applied_event(arm_run *run, contact_state before,
     const motion *m = run->motion;
     summary *s = &r->result->summary;
 
-    // the event itself; where a start on the wall was no touch, what follows has nothing
-    // to release
+    // the event itself, except for a release from a contact that never was one: the arm
+    // started on the wall without pressing on it
     if (report->event != MOTION_RELEASE || !isnan(s->first_contact_s)) {
         TRY(record_event(r, m, kind_of(m, report), report));
     }
@@ -293,7 +312,7 @@ void arm_run_strike_sensors(arm_run *run, const motion_report *report)
     }
 }
 
-// Hub, first and last link as they are.
+// Angles and velocities of hub, first and last link at present.
 static three_body_state three_bodies(const arm_run *run)
 {
     const motion *m = run->motion;
@@ -309,7 +328,7 @@ status arm_run_apply_event(arm_run *run, motion_report *report)
 
     // before it
     TRY(arm_run_record_row(run, m->state, 0));
-    if (touches(report) && lands(m) && first->time == 0) {
+    if (touches(report) && meets_face_at_rest(m) && first->time == 0) {
         first->before = three_bodies(run);
     }
 

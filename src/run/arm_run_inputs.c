@@ -7,7 +7,7 @@
 #include "src/run/arm_run.h"
 #include "src/run/recording.h"
 
-// How far behind a wall that is moved an arm in contact may be, by rounding [m].
+// How far rounding may put an arm in contact behind a wall that the script turns [m].
 #define WALL_ROUNDING 1e-12
 
 // --- the arm as its parameters and the command make it ---------------------------------
@@ -36,9 +36,10 @@ status arm_run_read_path(arm_run *run, fault *f)
 
 // --- changes of parameters -------------------------------------------------------------
 
-// Whether the wall stays in front of the arm, if the action moves it.
+// Checks that the wall still stands in front of the arm after an action that turns it.
 static status check_wall(const arm_run *run, const action *todo, fault *f)
 {
+    // only a new wall.angle turns it
     motion *m = run->motion;
     const wall_parameters *now = &run->recording->now.wall;
     if (todo->parameter != PARAMETER_INDEX(wall.angle) || todo->value == now->angle ||
@@ -46,12 +47,13 @@ static status check_wall(const arm_run *run, const action *todo, fault *f)
         return STATUS_OK;
     }
 
-    // the arm as it is, with the wall where it would be
+    // the wall as the action would leave it
     parameters p = run->recording->now;
     TRY(action_apply(todo, &p, f));
     arm after = run->arm;
     wall_init(&after.wall, &p);
 
+    // its gap to the arm as it is
     const double gap = motion_gap_with(&after, m);
     double least = 0;
     if (m->state[SLOT_CONTACT] != 0) {
@@ -66,16 +68,19 @@ static status check_wall(const arm_run *run, const action *todo, fault *f)
                         m->state[SLOT_TIME], p.wall.angle, -gap);
 }
 
-// Sets a parameter, under which the arm continues in its present state.
+// Sets a parameter; the arm continues in its present state under the new value. If that
+// fails, the arm has the parameters as far as they were set.
 static status set_parameter(arm_run *run, const action *todo, fault *f)
 {
     recording *r = run->recording;
     motion *m = run->motion;
+
+    // the parameter, and the rig's view of it
     const double now = m->state[SLOT_TIME];
     recording_before_change(r, todo, now, state_angles(m, m->state)[0]);
     const status failed = recording_set(r, todo, now, f);
 
-    // a voltage changes nothing but the torque
+    // a voltage changes the torque alone; under a rig the controller's voltage acts
     if (todo->parameter == PARAMETER_INDEX(motor.voltage)) {
         const double torque = run->arm.motor.torque;
         if (r->rig == NULL) {
@@ -95,7 +100,8 @@ static status set_parameter(arm_run *run, const action *todo, fault *f)
 
 // --- actions ---------------------------------------------------------------------------
 
-// Gives the arm a push, which in contact is an impact.
+// Gives the tip an impulse; in contact that is an impact on the wall, which goes into the
+// report. STATUS_NOT_FINITE if the energy overflows.
 static status push(arm_run *run, const action *todo, motion_report *report, fault *f)
 {
     const motion *m = run->motion;
@@ -112,9 +118,10 @@ static status push(arm_run *run, const action *todo, motion_report *report, faul
 
 status arm_run_apply_action(arm_run *run, const action *todo, int index, fault *f)
 {
+    // a row before the action, which must be possible
     motion *m = run->motion;
     motion_report report = {.event = MOTION_REACHED};
-    const double work = m->state[SLOT_EXTERNAL_WORK];
+    const double work_before = m->state[SLOT_EXTERNAL_WORK];
     const contact_state before = contact_state_of(m->state);
     if (todo->kind == ACTION_SET) {
         TRY(check_wall(run, todo, f));
@@ -131,12 +138,14 @@ status arm_run_apply_action(arm_run *run, const action *todo, int index, fault *
         e.impulse = todo->value;
         failed = push(run, todo, &report, f);
     }
+
+    // accelerations jump here; the work of the push counts even if the rest fails
     arm_run_note_jump(run);
-    arm_run_note_work(run, m->state[SLOT_EXTERNAL_WORK] - work);
+    arm_run_note_work(run, m->state[SLOT_EXTERNAL_WORK] - work_before);
     TRY(failed);
     TRY(trace_add_event(&run->recording->result->trace, e));
 
-    // either may end the contact
+    // either may change the contact; then a row after the action
     TRY(arm_run_record_change(run, before, &report));
     return arm_run_record_row(run, m->state, report.impulse);
 }
@@ -155,7 +164,8 @@ status arm_run_script(arm_run *run, fault *f)
 
 // --- the rig ---------------------------------------------------------------------------
 
-// Puts the rig's command into effect.
+// Puts the rig's present command into effect: the motor's torque changes, and with it
+// possibly the contact and what friction holds.
 static status apply_command(arm_run *run)
 {
     recording *r = run->recording;
@@ -163,13 +173,13 @@ static status apply_command(arm_run *run)
     contact_state before = contact_state_of(m->state);
     const double now = m->state[SLOT_TIME], torque = run->arm.motor.torque;
 
-    // the motor's torque until now is done with
+    // the energy of the command until now, then the new torque
     recording_change_command(r, now, state_angles(m, m->state)[0]);
     arm_set_voltage(&run->arm, r->rig->voltage);
     motion_retorque(&run->arm, m, torque);
 
-    // less torque may let the contact go, or hold the hub no more; the first command
-    // finds it so
+    // the contact may end and friction may hold or let go the hub; at the first command,
+    // at the start of the run, a change of friction is no event
     if (!(now > 0)) {
         before.friction = contact_state_of(m->state).friction;
     }
@@ -183,7 +193,7 @@ status arm_run_apply_sample(arm_run *run, bool changed)
     const bool sampled = recording_has_new_sample(r);
     const bool jumps = arm_run_has_first_row(run) && (changed || sampled);
 
-    // before it, unless the grid has a row here
+    // the row before the sample, unless the grid has one here
     if (jumps && !recording_has_row_at(r, arm_run_time(run))) {
         TRY(arm_run_record_row(run, arm_run_present_state(run), 0));
     }
@@ -194,7 +204,7 @@ status arm_run_apply_sample(arm_run *run, bool changed)
         TRY(apply_command(run));
     }
 
-    // after it
+    // the row after it
     if (jumps) {
         return arm_run_record_row(run, arm_run_present_state(run), 0);
     }

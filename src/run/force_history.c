@@ -228,14 +228,18 @@ static double holds_no_more(const run_result *r, const window_end *front,
     const shared_array *h = &r->history.forces;
     const force_step *steps = force_steps(h);
     const trace *t = &r->trace;
-    const double met =
+
+    // steps that are weak enough, up to the back's next event
+    const double next_event =
         back->event < t->event_count ? t->events[back->event].time : HUGE_VAL;
     size_t i = *bounded > back->step ? *bounded : back->step;
-    while (i < h->count && steps[i].end < met &&
+    while (i < h->count && steps[i].end < next_event &&
            step_at_most(&steps[i]) * window <= largest) {
         i++;
     }
     *bounded = i;
+
+    // they reach at least past the front's step
     if (i > front->step) {
         return steps[i - 1].end;
     }
