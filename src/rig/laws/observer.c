@@ -162,16 +162,17 @@ static double limited(const observer_memory *m, double command)
     return fmax(-m->rig.voltage_limit, fmin(command, m->rig.voltage_limit));
 }
 
-// Friction to overcome on the way: of the motion, or of the one wanted where the hub
-// rests.
-static double friction_ahead(const observer_memory *m, double rate, double wanted)
+// Friction that the command has to overcome [N m]: against the hub's rate, or where the
+// hub rests against the rate that is wanted of it [rad/s].
+static double friction_ahead(const observer_memory *m, double rate, double wanted_rate)
 {
-    double way = fabs(rate) > REST ? rate : wanted;
-    return coulomb_friction(&m->rig, way);
+    double direction = fabs(rate) > REST ? rate : wanted_rate;
+    return coulomb_friction(&m->rig, direction);
 }
 
-// Speed with which a tip that was thrown back is to meet the wall again: it falls with
-// the way left, and grows with it where the wall is no more [rad/s].
+// Speed with which a tip that was thrown back is to return to the wall [rad/s]. It is
+// proportional to the gap between tip and wall, at least that of a soft landing and at
+// most that of the first touch.
 static double landing_speed(const observer_memory *m, const estimator *e)
 {
     const double gap = fabs(observer_of(m)->wall - arm_observer_tip(observer_of(m), e));
@@ -179,8 +180,8 @@ static double landing_speed(const observer_memory *m, const estimator *e)
                 design_of(m)->touch_speed);
 }
 
-// Lands softly: takes the vibration out of the arm, so that all of it turns towards the
-// wall.
+// The command that lands the tip softly [V]: it takes the vibration out of the arm, which
+// then turns towards the wall as a whole.
 static double landing_command(const observer_memory *m, const estimator *e)
 {
     const arm_observer *o = observer_of(m);
@@ -191,25 +192,27 @@ static double landing_command(const observer_memory *m, const estimator *e)
     const double *gain = design_of(m)->land_gain, speed = landing_speed(m, e);
     double torque = 0;
     for (int i = 0; i < n; i++) {
-        const double off = i > 0 ? -e->z[i] : 0;
-        torque += gain[i] * off + gain[n + i] * (set->momentum[i] * speed - e->z[n + i]);
+        const double deflection_error = i > 0 ? -e->z[i] : 0;
+        torque += gain[i] * deflection_error +
+                  gain[n + i] * (set->momentum[i] * speed - e->z[n + i]);
     }
     torque *= m->rig.torque_per_volt;
 
-    // what friction takes of it; of a hub at rest no more than there is
+    // Hub damping, unknown torque and friction are compensated. Friction on a hub at rest
+    // takes the direction of the torque and is no more than that.
     const double rate = arm_observer_rate(o, e), stiction = m->rig.stiction;
     const double share = fabs(rate) > REST ? rate / REST : torque / stiction;
     torque += m->rig.hub_damping * speed - e->z[arm_observer_torque_index(o)] +
               stiction * fmax(-1, fmin(share, 1));
 
-    // a tip that is still at the wall is pressed on by what brakes the hub
+    // braking the hub presses a tip that is still at the wall: not with too much force
     torque = fmax(torque,
                   -BRAKING * m->p[FORCE_WANTED] / fabs(arm_observer_force_per_torque(o)));
     return limited(m, torque / m->rig.torque_per_volt);
 }
 
-// Keeps the arm to the plan: the torque it takes, and feedback of all deviations but the
-// angle.
+// The command that keeps the arm to the smooth approach [V]: the torque that the plan
+// takes, and feedback of all deviations from it but the angle's.
 static double travel_command(observer_memory *m, const estimator *e)
 {
     const arm_observer *o = observer_of(m);
@@ -217,12 +220,12 @@ static double travel_command(observer_memory *m, const estimator *e)
     const mode_set *set = &o->arm.free;
     const int n = set->count;
 
-    // near the wall the plan slows down
-    smooth_approach_slow(&m->plan, design, arm_observer_tip(o, e),
-                         e->z[0] / set->momentum[0]);
+    // the plan goes over to its next phase when that is due
+    smooth_approach_advance(&m->plan, design, arm_observer_tip(o, e),
+                            e->z[0] / set->momentum[0]);
     const double speed = smooth_approach_speed(&m->plan, design);
 
-    // all deviations from it but the angle's
+    // feedback of the deviations from the planned state; the gain of the angle is 0
     const double *gain = design->travel_gain, *planned = m->plan.state;
     double hub_speed = 0, feedback = 0;
     for (int i = 0; i < n; i++) {
@@ -231,7 +234,7 @@ static double travel_command(observer_memory *m, const estimator *e)
                     gain[n + i] * (planned[n + i] - e->z[n + i]);
     }
 
-    // and the torque that it takes
+    // the torque that the plan takes, with damping, friction and the unknown torque
     const double torque =
         m->rig.hub_damping * hub_speed - e->z[arm_observer_torque_index(o)] +
         friction_ahead(m, arm_observer_rate(o, e), fmax(speed, hub_speed)) +
@@ -239,14 +242,15 @@ static double travel_command(observer_memory *m, const estimator *e)
     return limited(m, torque / m->rig.torque_per_volt + feedback);
 }
 
-// Comes to the wall in the least time; by the usual approach where no such plan exists.
+// The command that brings the tip to the wall in the least time [V], or by the smooth
+// approach where no such plan exists.
 static double least_time_command(observer_memory *m, const estimator *e)
 {
     const controller_setup *r = &m->rig;
     const double volts = fmin(fabs(m->p[APPROACH_VOLTAGE]), r->voltage_limit);
     const double most = r->torque_per_volt * volts;
 
-    // besides the motor's torque there are friction and what is not known of
+    // the net torque is the motor's, less friction and plus the unknown torque
     const double drift = e->z[arm_observer_torque_index(observer_of(m))] - r->stiction;
     const quickest_task task = {.z = e->z,
                                 .low = drift - most,
@@ -277,8 +281,8 @@ static double stopping_force(const observer_memory *m, const estimator *e)
     return arm_observer_square(o, 0) * coordinate / (set->hub[0] * o->arm.length);
 }
 
-// Share of the stopping force that the force has at least: a tip that lands comes to it
-// sooner with less.
+// The force in contact is at least this share of the stopping force. The less it is, the
+// sooner a tip that landed after a bounce is stopped.
 static double least_share(const observer_memory *m)
 {
     if (m->losses > 0) {
@@ -287,10 +291,11 @@ static double least_share(const observer_memory *m)
     return 0.5;
 }
 
-// Limits a command so that the force it causes at once stays within the limit. This
-// applies where the force follows a torque at once, which it does not behind a spring at
-// the hub. A motion that the allowed force cannot stop gets more: only braking reduces
-// it, and braking presses.
+// Limits a command [V] so that the force which it causes at once stays between the least
+// force and the force limit. Behind a spring at the hub the force does not follow the
+// torque at once, and nothing is limited there but the voltage. A motion that a force
+// within the limit cannot stop is allowed a greater one: it has to be braked, and braking
+// presses.
 static double within_force(const observer_memory *m, const estimator *e, double command)
 {
     const arm_observer *o = observer_of(m);
@@ -313,14 +318,15 @@ static double within_force(const observer_memory *m, const estimator *e, double 
     return limited(m, command);
 }
 
-// First mode at rest under a force [sqrt(kg m2)].
+// Coordinate of the first mode in contact at rest under a force, h f L/w^2 [sqrt(kg m2)].
 static double mode_at_rest(const observer_memory *m, double force)
 {
     return observer_of(m)->arm.contact.hub[0] * force * observer_of(m)->arm.length /
            arm_observer_square(observer_of(m), 0);
 }
 
-// The first mode's way from a coordinate and its rate to a force [N].
+// Plans the rise to a force [N] from a coordinate of the first mode in contact and its
+// rate, at an instant [s].
 static void plan_rise(observer_memory *m, double time, double coordinate, double rate,
                       double force)
 {
@@ -344,17 +350,17 @@ static void plan_rise(observer_memory *m, double time, double coordinate, double
     }
 }
 
-// It goes on from where the mode is.
+// Begins the rise to the wanted force from the estimate of the first mode.
 static void begin_rise(observer_memory *m, double time)
 {
     const arm_observer *o = observer_of(m);
     plan_rise(m, time, o->e.z[0], o->e.z[o->arm.contact.count], m->p[FORCE_WANTED]);
 }
 
-// Force by which a set-point that keeps moving is led [N]. Of a plan that is made again
-// at every sample the force is 2 r/s behind a set-point with the rate r; what is aimed at
-// in advance comes to that with a lag of a quarter of that time, lest quick waves be
-// amplified without bound.
+// Force that is added to a set-point which keeps moving [N]. Since the rise is planned
+// again at every sample, the force stays 2 r/s behind a set-point that moves at the rate
+// r; so 2 r/s is added. It is added through a lag of a quarter of the time 2/s, because
+// otherwise fast waves of the set-point would be amplified without bound.
 static void lead_setpoint(observer_memory *m, bool keeps_moving)
 {
     if (!keeps_moving) {
@@ -365,8 +371,9 @@ static void lead_setpoint(observer_memory *m, bool keeps_moving)
     m->lead_force += share * (lead * m->force_rate - m->lead_force);
 }
 
-// Follows a set-point that changes in contact: the way goes on from where it is to the
-// new force. One change by itself is a step.
+// Follows a set-point that changes in contact: the rise is planned again, from where it
+// is to the new force. A single change is a step; changes in two samples running are a
+// set-point that keeps moving.
 static void follow_setpoint(observer_memory *m, double time)
 {
     if (m->force_change == 0 && m->force_rate == 0) {
@@ -374,19 +381,21 @@ static void follow_setpoint(observer_memory *m, double time)
     }
     const bool keeps_moving = m->force_change != 0 && m->force_rate != 0;
 
-    // where the way is, or where it rests under the force before
-    const double before = m->p[FORCE_WANTED] - m->force_change;
-    double way[3] = {mode_at_rest(m, before + m->correction), 0, 0};
+    // the planned motion of the first mode, which rests if the rise before is over
+    const double force_before = m->p[FORCE_WANTED] - m->force_change;
+    double motion[3] = {mode_at_rest(m, force_before + m->correction), 0, 0};
     if (force_rise_moves(&m->rise, time)) {
-        force_rise_at(&m->rise, time, way);
+        force_rise_at(&m->rise, time, motion);
     }
 
     // and from there to the new force
     m->force_rate = m->force_change / m->rig.period;
     m->force_change = 0;
     lead_setpoint(m, keeps_moving);
-    plan_rise(m, time, way[0], way[1],
+    plan_rise(m, time, motion[0], motion[1],
               fmax(0, m->p[FORCE_WANTED] + m->correction + m->lead_force));
+
+    // a set-point that keeps moving has the rise under way until the next sample
     if (keeps_moving) {
         m->rise.time = fmax(m->rise.time, 2 * m->rig.period);
     }
@@ -401,10 +410,11 @@ static double resting_force(const observer_memory *m, const estimator *e)
            o->arm.length;
 }
 
-// Friction to overcome in contact. At rest it is proportional to the force wanted there,
-// within the band that friction holds: its full step would change the force by several
-// per cent at once. Half of what is wanted is by the reading, which hub sensors that err
-// do not touch.
+// Friction to overcome in contact [N m], where the rise wants a rate of the hub [rad/s].
+// At rest the compensation is proportional to the force error, up to full friction: its
+// full step would change the force by several per cent at once. The error is the mean of
+// one by the estimate and one by the reading, which errors of the hub's sensors do not
+// touch.
 static double friction_pressing(const observer_memory *m, const estimator *e, double aim,
                                 double hub_rate, bool moves)
 {
@@ -415,12 +425,14 @@ static double friction_pressing(const observer_memory *m, const estimator *e, do
     if (moves || fabs(rate) > REST) {
         return friction_ahead(m, rate, hub_rate);
     }
-    const double off = (aim - resting_force(m, e) + force - m->mean_force) / 2;
-    return m->rig.stiction * fmax(-1, fmin(off / (HOLD_WITHIN * force + HOLD_LEAST), 1));
+    const double error = (aim - resting_force(m, e) + force - m->mean_force) / 2;
+    return m->rig.stiction *
+           fmax(-1, fmin(error / (HOLD_WITHIN * force + HOLD_LEAST), 1));
 }
 
-// Keeps the arm to the rise and then at rest: the first mode on its way, the others as
-// its torque bends them.
+// The command that keeps the arm to the rise, and then at rest [V]: the first mode to its
+// planned motion, the others to the deflections that the torque for that motion gives
+// them.
 static double press_command(const observer_memory *m, const estimator *e, double time)
 {
     const arm_observer *o = observer_of(m);
@@ -428,41 +440,41 @@ static double press_command(const observer_memory *m, const estimator *e, double
     const int n = set->count;
     const double aim = m->p[FORCE_WANTED] + m->correction;
 
-    // the first mode's way, and the torque on it
+    // the first mode's planned motion, and the torque for it: a'' + w^2 a = h torque
     const bool moves = force_rise_moves(&m->rise, time);
-    double way[3] = {mode_at_rest(m, aim), 0, 0};
+    double motion[3] = {mode_at_rest(m, aim), 0, 0};
     if (moves) {
-        force_rise_at(&m->rise, time, way);
+        force_rise_at(&m->rise, time, motion);
     }
-    double torque = (way[2] + arm_observer_square(o, 0) * way[0]) / set->hub[0];
+    double torque = (motion[2] + arm_observer_square(o, 0) * motion[0]) / set->hub[0];
 
-    // the others stand as that torque bends them
+    // feedback of the deviations from that; another mode rests at h torque/w^2
     const double *gain = design_of(m)->press_gain;
     double feedback = 0;
     for (int i = 0; i < n; i++) {
         double wanted = set->hub[i] * torque / set->square[i], wanted_rate = 0;
         if (i == 0) {
-            wanted = way[0];
-            wanted_rate = way[1];
+            wanted = motion[0];
+            wanted_rate = motion[1];
         }
         feedback +=
             gain[i] * (wanted - e->z[i]) + gain[n + i] * (wanted_rate - e->z[n + i]);
     }
 
-    // friction, and the torque that the model does not know of
-    const double hub_rate = set->hub[0] * way[1];
+    // hub damping, friction, and the torque that the model does not know of
+    const double hub_rate = set->hub[0] * motion[1];
     torque += m->rig.hub_damping * hub_rate - e->z[arm_observer_torque_index(o)] +
               friction_pressing(m, e, aim, hub_rate, moves);
     return within_force(m, e, torque / m->rig.torque_per_volt + feedback);
 }
 
-// Presses against a wall that throws the tip back. A hub that is moved by a spring and a
-// damper is passive: no wall, however it answers, takes work out of it, and each rebound
-// of the tip loses some to damper and wall. The hub goes slowly to where the arm presses
-// with the wanted force, since a tip thrown back meets the wall again with what the hub
-// has gained; an integral of the force error does the rest. Damper and spring are those
-// of an arm damped at 0.7 of the critical, as far as the lag of the loop leaves them
-// phase.
+// The command that presses against a wall which throws the tip back [V]. A hub that is
+// moved by a spring and a damper is passive: no wall, however it answers, takes work out
+// of it, and each rebound of the tip loses some to damper and wall. The hub goes slowly
+// to where the arm presses with the wanted force, since a tip thrown back meets the wall
+// again with what the hub has gained; an integral of the force error does the rest.
+// Damper and spring are those of an arm damped at 0.7 of the critical, as far as the lag
+// of the loop leaves them phase.
 static double catch_command(observer_memory *m, const controller_input *in)
 {
     const controller_setup *r = &m->rig;
@@ -471,37 +483,41 @@ static double catch_command(observer_memory *m, const controller_input *in)
 
     // inertia and stiffness of the first mode at the hub
     const double h = o->arm.contact.hub[0];
-    const double inertia = 1 / (h * h), arm = inertia * arm_observer_square(o, 0);
+    const double inertia = 1 / (h * h), stiffness = inertia * arm_observer_square(o, 0);
 
-    // damper and spring
-    const double damping =
-        fmin(2 * sqrt(inertia * arm), inertia / (PHASE_LOST * (r->period + r->delay)));
-    const double spring = fmax(0, fmin(arm, damping * damping / (2 * inertia) - arm));
+    // Damper c and spring k: c = 2 sqrt(I K) damps the arm with k = K at 0.7 of the
+    // critical; where the loop's lag allows less, k is what that c damps as well
+    const double damping = fmin(2 * sqrt(inertia * stiffness),
+                                inertia / (PHASE_LOST * (r->period + r->delay)));
+    const double spring =
+        fmax(0, fmin(stiffness, damping * damping / (2 * inertia) - stiffness));
 
-    // the way to where the arm presses with the force
-    const double end = force * length / arm, left = end - m->hub_way;
+    // the hub goes on to the angle at which the arm presses with the wanted force
+    const double end = force * length / stiffness, left = end - m->hub_way;
     const double rate =
         fmin(CATCH_SPEED * end + CATCH_GROWTH * m->hub_way, left / CATCH_END);
     const bool near_end = left < 0.1 * end;
     m->hub_way += rate * r->period;
 
-    // at its end the integral, which cannot wind up beyond what friction and a wrong
-    // model explain
+    // near that angle the force error is integrated; the integral is bounded by what
+    // friction and a wrong model can explain
     m->mean_force +=
         fmin(1, r->period / CATCH_MEAN) * (fmin(in->force, 2 * force) - m->mean_force);
-    const double off = force - m->mean_force;
-    if (near_end && fabs(off) > HOLD_WITHIN * force + HOLD_LEAST) {
+    const double error = force - m->mean_force;
+    if (near_end && fabs(error) > HOLD_WITHIN * force + HOLD_LEAST) {
         const double most = MOST_CORRECTION * force + r->stiction / length;
-        m->integral += r->period / INTEGRAL_TIME * off;
+        m->integral += r->period / INTEGRAL_TIME * error;
         m->integral = fmax(-most, fmin(m->integral, most));
     }
 
-    // the torque that the way takes, spring and damper
-    const double more = length * m->integral;
-    const double angle = m->touched + m->hub_way + more / arm;
-    const double moving = near_end ? in->tachometer : rate;
-    const double torque = arm * m->hub_way + more + r->hub_damping * rate +
-                          r->stiction * fmax(-1, fmin(moving / FULL_FRICTION, 1)) +
+    // the torque that the bent arm, damping and friction take, and spring and damper
+    const double integral_torque = length * m->integral;
+    const double angle = m->touched + m->hub_way + integral_torque / stiffness;
+    const double friction_rate = near_end ? in->tachometer : rate;
+    const double friction =
+        r->stiction * fmax(-1, fmin(friction_rate / FULL_FRICTION, 1));
+    const double torque = stiffness * m->hub_way + integral_torque +
+                          r->hub_damping * rate + friction +
                           spring * (angle - in->encoder) +
                           fmax(0, damping - r->hub_damping) * (rate - in->tachometer);
     return limited(m, torque / r->torque_per_volt);
@@ -509,7 +525,7 @@ static double catch_command(observer_memory *m, const controller_input *in)
 
 // --- modes -----------------------------------------------------------------------------
 
-// Where the readings favour another arm, the present mode starts again for that one.
+// Starts the present mode again for the arm that the readings have come to favour.
 static void restart_mode(observer_memory *m, double time)
 {
     if (observer_of(m)->touches) {
@@ -522,7 +538,7 @@ static void restart_mode(observer_memory *m, double time)
     }
 }
 
-// The tip is at the wall.
+// Goes over to PRESS: the tip has met the wall.
 static void begin_contact(observer_memory *m, double time)
 {
     observer_arms_touch(&m->arms, time);
@@ -534,8 +550,8 @@ static void begin_contact(observer_memory *m, double time)
     begin_rise(m, time);
 }
 
-// The tip has left the wall. One that is thrown back again and again is caught, any other
-// lands again.
+// Goes over to CATCH or RECOVER: the tip has left the wall. A tip that is thrown back
+// again and again is caught, any other lands again.
 static void end_contact(observer_memory *m, const controller_input *in)
 {
     // only brief contacts in a row count
@@ -546,6 +562,7 @@ static void end_contact(observer_memory *m, const controller_input *in)
         m->losses = 1;
     }
 
+    // a tip that returns by itself is caught at the second loss, any at the third
     const bool returns = m->losses > 1 && arm_observer_returns(observer_of(m));
     if (m->mode != CATCH && (returns || m->losses >= THROWN_BACK)) {
         m->mode = CATCH;
@@ -557,7 +574,8 @@ static void end_contact(observer_memory *m, const controller_input *in)
     m->mode = RECOVER;
 }
 
-// Contact and its loss by the force reading; a plan that has come to its end needs none.
+// Detects contact and its loss by the force reading. A plan of the least time that has
+// come to its end is taken to have met the wall, whatever the reading.
 static void follow_contact(observer_memory *m, const controller_input *in)
 {
     const bool arrived = m->in_least_time && m->quickest.planned && m->quickest.left == 0;
@@ -567,14 +585,14 @@ static void follow_contact(observer_memory *m, const controller_input *in)
         return;
     }
 
-    // a tip that was caught and stays is pressed on
+    // a tip that was caught and has stayed at the wall is pressed as usual
     if (m->mode == CATCH && m->felt > 2 && m->felt * m->rig.period > STAYS_AFTER) {
         m->mode = PRESS;
         m->correction = 0;
         begin_rise(m, in->time);
     }
 
-    // contact ends with readings that show none; while a tip is caught, later
+    // contact ends when no reading has shown it for a while, for longer during CATCH
     m->away += m->rig.period;
     if (m->felt > 0) {
         m->away = 0;
@@ -600,30 +618,30 @@ static void correct_aim(observer_memory *m, const controller_input *in)
     }
 }
 
-// The reading's mean, and how far it swings about it. Just after an impact the sensor is
-// off scale: beyond twice the wanted force a reading says no more than that it is too
-// much.
+// Averages the reading, and the square of its deviation from that average. Just after an
+// impact the sensor is off scale, so a reading counts as at most twice the wanted force.
 static void follow_reading(observer_memory *m, double reading)
 {
-    double off = fmin(reading, 2 * m->p[FORCE_WANTED]) - m->mean_force;
+    double deviation = fmin(reading, 2 * m->p[FORCE_WANTED]) - m->mean_force;
     double share = fmin(1, m->rig.period / SWING_MEAN);
-    m->mean_force += share * off;
-    m->swing += share * (off * off - m->swing);
+    m->mean_force += share * deviation;
+    m->swing += share * (deviation * deviation - m->swing);
 }
 
-// Whether the held command is still right. A reading counts as at most five standard
-// deviations off, because the sensor also shows blows on the tip that the hub does not
-// feel.
+// Whether the averaged reading is still near enough to the wanted force for the command
+// to be held. A reading counts as at most five standard deviations from the average,
+// because the sensor also shows blows on the tip that the hub does not feel.
 static bool held_force_is_right(observer_memory *m, double reading)
 {
-    double force = m->p[FORCE_WANTED], off = reading - m->held_force;
+    double force = m->p[FORCE_WANTED], deviation = reading - m->held_force;
     double most = 5 * arm_observer_force_noise(force);
-    m->held_force += fmin(1, m->rig.period / HOLD_MEAN) * fmax(-most, fmin(off, most));
+    m->held_force +=
+        fmin(1, m->rig.period / HOLD_MEAN) * fmax(-most, fmin(deviation, most));
     return fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST;
 }
 
-// Whether friction holds the hub at rest where the force is right, that one stays, and
-// the beam has come to rest.
+// Whether friction holds the hub at rest, set-point and beam rest as well, and the force
+// is right.
 static bool rests_at_right_force(const observer_memory *m, const estimator *e,
                                  double rate)
 {
@@ -634,7 +652,8 @@ static bool rests_at_right_force(const observer_memory *m, const estimator *e,
            sqrt(m->swing) < HOLD_SWING * force + HOLD_LEAST;
 }
 
-// Holds where it rests right, until the reading's mean says otherwise.
+// Goes over to HOLD where the hub rests at the right force, and back to PRESS when the
+// averaged reading has left it.
 static void choose_hold(observer_memory *m, const estimator *e,
                         const controller_input *in)
 {
@@ -666,8 +685,8 @@ static void begin_approach(observer_memory *m, const controller_input *in)
     const double wall = m->rig.wall_angle, doubt = m->p[WALL_DOUBT];
     const double soft = design_of(m)->arrival_speed;
     m->plan = (smooth_approach){.period = m->rig.period,
-                                .guarded = wall - fmin(doubt, GUARD_BEFORE * soft),
-                                .passed = wall + fmin(doubt, GUARD_AFTER * soft)};
+                                .wall_nearest = wall - fmin(doubt, GUARD_BEFORE * soft),
+                                .wall_furthest = wall + fmin(doubt, GUARD_AFTER * soft)};
     smooth_approach_begin(&m->plan, design_of(m), in->encoder);
 }
 
