@@ -512,7 +512,8 @@ static status add_named(report_content *r, char *const *names, int count, fault 
 
 // ---- the whole
 
-// Fills the report and writes both files.
+// Fills the report with the items that are named, or with the catalogue where none is,
+// and writes it into a folder, as HTML and as PDF.
 static status write_both(report_content *r, const char *folder, char *const *names,
                          int count, fault *f)
 {
@@ -560,5 +561,8 @@ status report_write(const char *folder, char *const *names, int count,
     if (code == STATUS_OK) {
         return code;
     }
+
+    // The fault keeps its sentence, but not its place in a file: that may be a scenario
+    // of the catalogue, which the caller has not named.
     return fault_set(f, code, "%s", why.text);
 }

@@ -119,15 +119,18 @@ static void touch_tiles(sample_buffer *b, const flat_triangle *t)
     }
 }
 
-// What changes linearly over a triangle: its corners' shares, colour and depth; and where
-// a share crosses zero in a row, from its value in the first column.
+// The quantities that change linearly over a triangle: each corner's share (its
+// barycentric coordinate), colour and depth.
 typedef struct triangle_ramps {
     ramp share[3], tint[3], depth;
-    float column[3]; // columns per unit of the share, away from its value; 0: it never
-                     // crosses
+
+    // -1/(change of the share from column to column): times the share in the first column
+    // of a row it is the column at which the share crosses zero; 0 where it never does
+    float column[3];
 } triangle_ramps;
 
-// How shares of the corners, colour and depth change over a triangle.
+// The ramps of a triangle t with the corners v. Corner k has the share 1 at itself and 0
+// at both others.
 static triangle_ramps ramps_of(const flat_triangle *t, const gl_vertex *const v[3])
 {
     triangle_ramps r;

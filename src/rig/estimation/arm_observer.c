@@ -11,27 +11,27 @@ enum { N = ESTIMATOR_STATES };
 _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES,
                "the states of all modes have room");
 
-// What readings and models are worth: standard deviations.
+// Standard deviations of the readings and of what the models leave out.
 #define FORCE_NOISE  0.02 // of the force sensor [N]
 #define FORCE_SHARE  0.02 // of the force sensor, as a share of the reading
 #define FILM_NOISE   0.01 // of the film [rad]
-#define FILM_LEAK    0.1  // that its charge loses [rad/s]
+#define FILM_LEAK    0.1  // with which the film loses its charge [rad/s]
 #define ACCELERATION 1.0  // of the accelerometer [rad/s2]
 #define TORQUE_DRIFT 0.1  // of the unknown torque, in a second, in flight [N m],
 #define TORQUE_STAYS 0.05 // and in contact, where a wall that yields looks like one [N m]
 #define WALL_DRIFT   1e-3 // of the wall, in a second [rad]
 #define STIFFNESS    0.25 // share by which the stiffness may be wrong
-// degrees of freedom of the distribution that misses of readings have
+// degrees of freedom of Student's distribution of the prediction errors
 #define TAILS        4.0
 #define STIFF_MEMORY 0.5  // over which readings count for the stiffness [s],
-#define STIFF_GUESS  0.15 // and as what the nominal one does [s]
-#define LEAST_STIFF  0.2  // share of it that the arm has at least
-#define OUTLIER      4.0  // readings further off, in standard deviations, are worth less
-#define TIP_IMPULSE  0.03 // that the wall may give unseen, a standard deviation [N s]
+#define STIFF_GUESS  0.15 // time of pressing that the nominal one counts as [s]
+#define LEAST_STIFF  0.2  // least stiffness that is taken for true, over the nominal one
+#define OUTLIER      4.0  // standard deviations from which on a reading counts for less
+#define TIP_IMPULSE  0.03 // of the wall on the tip that no sensor sees [N s]
 #define YOUNG        0.1  // a contact after less time may still throw the tip back [s]
 #define REST         0.01 // a slower hub counts as at rest [rad/s]
 
-// The modes of the present state.
+// The modes of the present state: in contact or in flight.
 static const mode_set *modes_of(const arm_observer *o)
 {
     if (o->touches) {
@@ -72,7 +72,7 @@ double arm_observer_square(const arm_observer *o, int i)
     return modes_of(o)->square[i];
 }
 
-// start + a.b over n entries.
+// start + a'b for vectors of n entries.
 static double add_products(double start, int n, const double *a, const double *b)
 {
     for (int i = 0; i < n; i++) {
@@ -81,7 +81,7 @@ static double add_products(double start, int n, const double *a, const double *b
     return start;
 }
 
-// start + row p row' over n entries, p a part of a covariance.
+// start + row p row', the variance of row z, for n states; p: their rows of a covariance.
 static double add_variance(double start, int n, const double *row, const double *p)
 {
     for (int i = 0; i < n; i++) {
@@ -94,8 +94,11 @@ static double add_variance(double start, int n, const double *row, const double 
 
 // --- the model -------------------------------------------------------------------------
 
-// a_i'' = -w_i^2 a_i - c_i a_i' + h_i (drive + unknown torque - damping hub rate), over
-// h.
+// Samples the equations of the modes over a time h [s]:
+//
+//     a_i'' = -w_i^2 a_i - c_i a_i' + h_i (drive + unknown torque - damping hub rate)
+//
+// `torque` is the index of the unknown torque, the last state.
 static void sample_model(const arm_observer *o, const mode_set *set, int torque, double h,
                          sampled_model *model)
 {
@@ -126,7 +129,8 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup,
         return refusal;
     }
 
-    // what the states obey, in each piece of a period
+    // A command takes effect a delay after its sample: one model for the part of a period
+    // before that, one for the part after it
     o->torque_per_volt = setup->torque_per_volt;
     o->hub_damping = setup->hub_damping;
     o->stiction = setup->stiction;
@@ -153,7 +157,7 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
         o->e.p[set->count + i][set->count + i] = 1e-6;
     }
 
-    // what it knows of the rest: friction's share, and nothing of the wall
+    // the unknown torque may be as large as friction; of the wall nothing is known
     int torque = 2 * set->count;
     o->e.p[torque][torque] = o->stiction * o->stiction;
     o->touches = false;
@@ -175,7 +179,8 @@ void arm_observer_know_wall(arm_observer *o, double angle)
 
 // --- what an estimate says -------------------------------------------------------------
 
-// An angle by its shape in the modes, seen from the wall in contact [rad].
+// An angle of an estimate, the sum of the modes' coordinates times their shapes [rad]. In
+// contact the modes give the angle from the wall's angle on.
 static double angle_of(const arm_observer *o, const estimator *e, const double *shape)
 {
     return add_products(o->touches ? e->z[wall_index(o)] : 0, count_of(o), shape, e->z);
@@ -192,13 +197,15 @@ double arm_observer_rate(const arm_observer *o, const estimator *e)
     return add_products(0, set->count, set->hub, e->z + set->count);
 }
 
-// Inverse of the hub's inertia as the modes show it, sum h_i^2 [1/(kg m2)].
+// Acceleration of the hub for a torque on it, sum h_i^2 [1/(kg m2)].
 static double hub_mobility(const mode_set *set)
 {
     return add_products(0, set->count, set->hub, set->hub);
 }
 
-// Torque on the hub under which it keeps its velocity [N m].
+// Torque on the hub under which it keeps its velocity, so that sum h_i a_i'' = 0 [N m]:
+//
+//     sum h_i (w_i^2 a_i + c_i a_i') / sum h_i^2
 static double balancing_torque(const arm_observer *o, const estimator *e)
 {
     const mode_set *set = modes_of(o);
@@ -215,8 +222,8 @@ double arm_observer_holding_torque(const arm_observer *o, const estimator *e)
     return balancing_torque(o, e) - e->z[arm_observer_torque_index(o)];
 }
 
-// Friction on the hub under a motor torque [N m], against the motion, or what holds at
-// rest.
+// Friction on the hub under a motor torque [N m]. It opposes a hub that moves; on a hub
+// at rest it is, within its limit, the torque that stops the hub within a period.
 static double friction_under(const arm_observer *o, const estimator *e, double drive)
 {
     double rate = arm_observer_rate(o, e), limit = o->stiction;
@@ -224,7 +231,7 @@ static double friction_under(const arm_observer *o, const estimator *e, double d
         return copysign(limit, rate);
     }
 
-    // what brings it to rest and holds it there
+    // what balances the other torques, and what takes the rest of the rate away
     double net = drive + e->z[arm_observer_torque_index(o)] - o->hub_damping * rate -
                  balancing_torque(o, e);
     double stop = rate / (hub_mobility(modes_of(o)) * o->period);
@@ -241,8 +248,9 @@ double arm_observer_force_per_torque(const arm_observer *o)
     return share / o->arm.length;
 }
 
-// The force, L f = T - sum p_i a_i'' (reduced_arm.h), is row times state plus what drive
-// and friction add at once.
+// The row by which the contact force depends on the state, by L f = T - sum p_i a_i''
+// (reduced_arm.h) with the modes' equations for a_i''. Drive and friction add their part
+// at once, arm_observer_force_per_torque each.
 static void force_row(const arm_observer *o, double *row)
 {
     const mode_set *set = &o->arm.contact;
@@ -268,19 +276,23 @@ double arm_observer_force(const arm_observer *o, const estimator *e, double driv
 
 // --- one sample ------------------------------------------------------------------------
 
-// What the model leaves out over a time h, as variances: torques on the hub that change
-// from sample to sample, and the drift of the unknown torque and of the wall.
+// Variances that the states gain over a time h [s] by what the model leaves out: torques
+// on the hub that change from sample to sample, and the drift of the unknown torque and
+// of the wall.
 static void process_noise(const arm_observer *o, const estimator *e, double h,
                           double noise[N])
 {
     const mode_set *set = modes_of(o);
     const int n = set->count;
     const double share = h / o->period;
+
+    // torques that change from sample to sample change the rates
     for (int i = 0; i < n; i++) {
-        const double kick = set->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
-        noise[n + i] = share * kick * kick;
+        const double rate_change = set->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
+        noise[n + i] = share * rate_change * rate_change;
     }
 
+    // the unknown torque drifts
     const double drift = o->touches ? TORQUE_STAYS : TORQUE_DRIFT;
     noise[arm_observer_torque_index(o)] = drift * drift * h;
 
@@ -293,7 +305,7 @@ static void process_noise(const arm_observer *o, const estimator *e, double h,
     }
 }
 
-// An estimate after a time h under a command that is in effect [V].
+// Moves an estimate on by a time h [s] under a command that is in effect [V].
 static void predict_state(const arm_observer *o, estimator *e, const sampled_model *model,
                           double h, double voltage)
 {
@@ -307,44 +319,48 @@ static void predict_state(const arm_observer *o, estimator *e, const sampled_mod
         return;
     }
 
-    // stiffer than nominal: the difference as a force held over h
-    sampled_model now = *model;
-    const double more = (o->stiffness - 1) * o->arm.contact.square[0] * h;
-    now.a[o->arm.contact.count][0] -= more;
-    now.a[0][0] -= more * h / 2;
-    estimator_predict(e, &now, net, noise);
+    // The first mode's stiffness differs from the nominal one by (stiffness - 1) w^2. Its
+    // force on the coordinate at the beginning, held over h, changes the rate by that
+    // times h and the coordinate by that times h^2/2.
+    sampled_model corrected = *model;
+    const double rate_change = (o->stiffness - 1) * o->arm.contact.square[0] * h;
+    corrected.a[o->arm.contact.count][0] -= rate_change;
+    corrected.a[0][0] -= rate_change * h / 2;
+    estimator_predict(e, &corrected, net, noise);
 }
 
-// Down-weights a reading that is far from its expectation, as an impact is no noise.
-// Returns its weight, at most 1.
+// Takes a reading of row z + offset with a standard deviation into the estimate, and adds
+// its prediction error to the misfit. A reading far from its expectation counts for less,
+// since an impact is no noise. Returns its weight, at most 1.
 static double take_reading(arm_observer *o, const double *row, double offset,
                            double reading, double deviation)
 {
     const int n = state_count(o);
 
-    // what the estimate expects, and how far off that may be
+    // the prediction error in standard deviations of estimate and reading together
     const double expected = add_products(offset, n, row, o->e.z);
     const double variance = add_variance(deviation * deviation, n, row, &o->e.p[0][0]);
-    const double off = fabs(reading - expected) / sqrt(variance);
+    const double distance = fabs(reading - expected) / sqrt(variance);
 
     // -2 log likelihood by Student's distribution; the estimate's own variance is left
     // out, as a model is no better for claiming less of it
     if (o->moves) {
-        const double miss = (reading - expected) / deviation;
-        o->missed += (TAILS + 1) * plain_log(1 + miss * miss / TAILS);
+        const double error = (reading - expected) / deviation;
+        o->missed += (TAILS + 1) * plain_log(1 + error * error / TAILS);
     }
 
     // beyond the limit the weight falls with the distance
-    const double doubt = off > OUTLIER ? off / OUTLIER : 1;
+    const double doubt = distance > OUTLIER ? distance / OUTLIER : 1;
     estimator_correct(&o->e, n, row, offset, reading,
                       deviation * deviation * doubt * doubt);
     return 1 / doubt;
 }
 
-// The accelerometer shows a'' at the hub: row times state, and what drive and friction
-// give,
+// Takes in the reading of the accelerometer. It shows the hub's acceleration,
 //
-//     sum h_i a_i'',    a_i'' = -w_i^2 a_i - c_i a_i' + h_i T
+//     sum h_i a_i'',    a_i'' = -w_i^2 a_i - c_i a_i' + h_i T,
+//
+// a row times the state and, of drive and friction in T, an offset.
 static void take_acceleration(arm_observer *o, const controller_input *in)
 {
     const mode_set *set = modes_of(o);
@@ -362,7 +378,8 @@ static void take_acceleration(arm_observer *o, const controller_input *in)
     take_reading(o, row, offset, in->accelerometer, ACCELERATION);
 }
 
-// Hub and beam: encoder, tachometer, and film and accelerometer where they are fitted.
+// Takes in the readings of the motion: of encoder and tachometer, and of film and
+// accelerometer where these are fitted.
 static void take_motion(arm_observer *o, const hub_sensors *s, const controller_input *in)
 {
     const mode_set *set = modes_of(o);
@@ -394,6 +411,8 @@ double arm_observer_force_noise(double force)
     return FORCE_NOISE + FORCE_SHARE * fabs(force);
 }
 
+// Takes in the reading of the force sensor; returns the weight of take_reading. Its row
+// is that of the force, its offset what the estimated force has beyond row times state.
 static double take_force(arm_observer *o, const controller_input *in)
 {
     double row[N], drive = o->torque_per_volt * in->voltage;
@@ -403,35 +422,38 @@ static double take_force(arm_observer *o, const controller_input *in)
     return take_reading(o, row, offset, in->force, arm_observer_force_noise(in->force));
 }
 
-// How stiff the arm is in contact, over its nominal stiffness: by least squares of the
-// forces of the first mode, as read and as the nominal stiffness has them,
+// Learns how stiff the arm is in contact, over its nominal stiffness, from a reading of
+// the force with a weight. It is the least squares solution of read = stiffness nominal,
 //
-//     stiffness = (sum nominal read + guess)/(sum nominal^2 + guess)
+//     stiffness = (sum nominal read + guess)/(sum nominal^2 + guess),
 //
-// both less what the other modes and the motion make of them. The guess counts as
-// STIFF_GUESS of pressing with the wanted force, long enough for vibrations that the
-// model does not show to cancel.
-static void learn_stiffness(arm_observer *o, const controller_input *in, double worth)
+// where `nominal` is the first mode's force at the nominal stiffness, by the encoder, and
+// `read` the reading less the forces of the other modes and of the motion. The guess
+// draws the quotient towards 1 like pressing with the wanted force for a time
+// STIFF_GUESS, which is long enough for vibrations that the model does not show to
+// cancel.
+static void learn_stiffness(arm_observer *o, const controller_input *in,
+                            double reading_weight)
 {
     const mode_set *set = &o->arm.contact;
     const double per_mode = set->momentum[0] * set->square[0] / o->arm.length;
 
-    // the nominal force by the way of the hub since the touch
+    // the nominal force, by the hub's angle since the touch without the other modes'
     double bend = in->encoder - o->met;
     for (int i = 1; i < set->count; i++) {
         bend -= set->hub[i] * o->e.z[i];
     }
     const double nominal = per_mode * bend / set->hub[0];
 
-    // and as it was read
+    // the reading of it, without the other modes and the motion
     const double drive = o->torque_per_volt * in->voltage;
     const double others =
         arm_observer_force(o, &o->e, drive) - per_mode * o->stiffness * o->e.z[0];
     const double read = in->force - others;
 
-    // sums that forget, and their quotient
+    // both sums, in which old readings fade, and their quotient
     const double kept = 1 - fmin(1, o->period / STIFF_MEMORY);
-    const double weight = o->period * worth * worth;
+    const double weight = o->period * reading_weight * reading_weight;
     o->stiff_force = kept * o->stiff_force + weight * nominal * read;
     o->stiff_bend = kept * o->stiff_bend + weight * nominal * nominal;
     const double stiffness = (o->stiff_force + o->stiff_nominal) /
@@ -439,33 +461,36 @@ static void learn_stiffness(arm_observer *o, const controller_input *in, double 
     o->stiffness = fmax(LEAST_STIFF, stiffness);
 }
 
-// An impulse at the tip that no sensor saw, as variance of an estimate in flight.
+// Adds to an estimate in flight the variance of an impulse at the tip that no sensor saw:
+// an impulse changes the rate of mode i by the length of the arm times tip_i for each N
+// s.
 static void doubt_tip(const arm_observer *o, estimator *e)
 {
     const mode_set *free = &o->arm.free;
     const int n = free->count;
-    const double l = o->arm.length * TIP_IMPULSE;
+    const double angular_impulse = o->arm.length * TIP_IMPULSE;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            e->p[n + i][n + j] += l * l * free->tip[i] * free->tip[j];
+            e->p[n + i][n + j] +=
+                angular_impulse * angular_impulse * free->tip[i] * free->tip[j];
         }
     }
 }
 
-// Whether the hub's rate is none that the estimate in flight explains: the tip was
-// struck.
+// Whether the tip was struck: the tachometer's reading differs from the rate of the
+// estimate in flight by more than OUTLIER standard deviations.
 static bool struck(const arm_observer *o, const hub_sensors *s,
                    const controller_input *in)
 {
     const double *hub = o->arm.free.hub;
     const int n = o->arm.free.count;
-    const double off = add_products(-in->tachometer, n, hub, o->e.z + n);
+    const double error = add_products(-in->tachometer, n, hub, o->e.z + n);
     const double variance = add_variance(s->rate_variance, n, hub, &o->e.p[n][n]);
-    return off * off > OUTLIER * OUTLIER * variance;
+    return error * error > OUTLIER * OUTLIER * variance;
 }
 
-// The motion since the sample before, the old command first, and what the sensors say of
-// it.
+// Moves the estimate from the sample before to this one, first under the old command,
+// then under the present one, and takes in the readings of the motion.
 static void follow_motion(arm_observer *o, const hub_sensors *s,
                           const controller_input *in)
 {
@@ -482,20 +507,25 @@ static void follow_motion(arm_observer *o, const hub_sensors *s,
     take_motion(o, s, in);
 }
 
-// The estimate of a tip that is thrown back, beside that of one that stays.
+// Follows the motion for the second estimate, `flown`, that of a tip which the wall has
+// thrown back. The observer becomes one in flight meanwhile; estimate and misfit of the
+// tip that stays are put back afterwards.
 static void follow_flight(arm_observer *o, const hub_sensors *s,
                           const controller_input *in, int felt)
 {
-    const estimator stays = o->e;
+    const estimator in_contact = o->e;
     const double missed = o->missed;
     o->e = o->flown;
     o->touches = false;
+
+    // a reading of force without contact is an impulse at the tip
     follow_motion(o, s, in);
     if (felt > 0) {
         doubt_tip(o, &o->e);
     }
+
     o->flown = o->e;
-    o->e = stays;
+    o->e = in_contact;
     o->missed = missed;
     o->touches = true;
     o->young = in->time - o->since < YOUNG;
@@ -504,7 +534,7 @@ static void follow_flight(arm_observer *o, const hub_sensors *s,
 void arm_observer_sample(arm_observer *o, const hub_sensors *s,
                          const controller_input *in, int felt)
 {
-    // the motion
+    // the motion, in both estimates while the tip may still be thrown back
     o->moves = s->moves;
     if (o->touches && o->young) {
         follow_flight(o, s, in, felt);
@@ -517,7 +547,7 @@ void arm_observer_sample(arm_observer *o, const hub_sensors *s,
         learn_stiffness(o, in, take_force(o, in));
     }
 
-    // what a touch will need to know
+    // where the wall is, and in flight between which angles the next touch will be
     if (o->touches) {
         o->wall = o->e.z[wall_index(o)];
         o->wall_variance = o->e.p[wall_index(o)][wall_index(o)];
@@ -543,22 +573,23 @@ bool arm_observer_returns(const arm_observer *o)
            add_products(0, free->count, free->tip, o->flown.z + free->count) > 0;
 }
 
-// --- touch and flight
-// --------------------------------------------------------------------
+// --- touch and flight ------------------------------------------------------------------
 
-// The wall is where the tip came between the two samples, anywhere on its way there; or
-// by that and by where it was known to be, each with the weight of the other's variance.
-static double place_of_wall(const arm_observer *o, double *variance)
+// The wall's angle at a touch, and its variance [rad], [rad2]. The tip met the wall
+// anywhere between its last two angles, a uniform distribution: its mean is their middle,
+// its variance the square of their distance over 12. A wall that was known before is the
+// mean of that and of the known angle, each weighted with the other's variance.
+static double wall_at_touch(const arm_observer *o, double *variance)
 {
-    const double way = o->tip_now - o->tip_before;
-    const double met = (o->tip_now + o->tip_before) / 2;
-    *variance = way * way / 12 + 1e-6;
+    const double distance = o->tip_now - o->tip_before;
+    const double middle = (o->tip_now + o->tip_before) / 2;
+    *variance = distance * distance / 12 + 1e-6;
     if (!(o->wall_variance < HUGE_VAL)) {
-        return met;
+        return middle;
     }
-    const double known = o->wall_variance + 1e-6, by_way = *variance;
-    *variance = known * by_way / (known + by_way);
-    return (met * known + o->wall * by_way) / (known + by_way);
+    const double known = o->wall_variance + 1e-6, seen = *variance;
+    *variance = known * seen / (known + seen);
+    return (middle * known + o->wall * seen) / (known + seen);
 }
 
 void arm_observer_touch(arm_observer *o, double time)
@@ -567,14 +598,15 @@ void arm_observer_touch(arm_observer *o, double time)
     const mode_set *contact = &o->arm.contact;
     const int m = contact->count, n = o->arm.free.count, wall = 2 * m;
     double variance;
-    o->met = place_of_wall(o, &variance);
+    o->met = wall_at_touch(o, &variance);
 
-    // beside it the estimate of a tip that is thrown back
+    // a second estimate, of a tip that is thrown back, goes on in flight
     o->flown = o->e;
     o->young = true;
     doubt_tip(o, &o->flown);
 
-    // what the touch keeps of the motion, and the torque that the model does not know of
+    // a_contact = X a_free, and the rates as well (reduced_arm.h); the unknown torque
+    // stays
     double t[N][N] = {{0}};
     for (int i = 0; i < m; i++) {
         for (int j = 0; j < n; j++) {
@@ -584,7 +616,8 @@ void arm_observer_touch(arm_observer *o, double time)
     t[wall + 1][2 * n] = 1;
     estimator_transform(&o->e, 2 * n + 1, 2 * m + 2, t);
 
-    // modes as seen from the wall, whose variance is theirs, too; rates after the impulse
+    // The coordinates count from the wall, a - p theta_wall, and share its variance; the
+    // impulse leaves the rates in some doubt
     o->e.z[wall] = o->met;
     o->e.p[wall][wall] = variance;
     for (int i = 0; i < m; i++) {
@@ -593,8 +626,9 @@ void arm_observer_touch(arm_observer *o, double time)
         for (int j = 0; j < m; j++) {
             o->e.p[i][j] += contact->momentum[i] * contact->momentum[j] * variance;
         }
-        const double kick = contact->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
-        o->e.p[m + i][m + i] += kick * kick;
+        const double rate_change =
+            contact->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
+        o->e.p[m + i][m + i] += rate_change * rate_change;
     }
     o->touches = true;
     o->since = time;
@@ -607,10 +641,10 @@ void arm_observer_leave(arm_observer *o, double time)
     const int m = o->arm.contact.count, n = free->count, wall = 2 * m;
 
     if (o->young) {
-        // a young contact may have been none that the tip stayed in
+        // the tip may not have stayed in a young contact: the second estimate is the one
         o->e = o->flown;
     } else {
-        // the motion at the wall as one in flight, seen from the angle of rest
+        // a_free = X'a_contact + p_free theta_wall (reduced_arm.h), and the rates
         double t[N][N] = {{0}};
         for (int i = 0; i < n; i++) {
             for (int j = 0; j < m; j++) {

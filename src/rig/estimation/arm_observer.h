@@ -21,22 +21,23 @@ typedef struct arm_observer {
     // either state over the delay of a command, with the one before in effect, and over
     // the rest
     sampled_model free_model[2], contact_model[2];
-    bool touches, young; // young: a contact that may have ended in a bounce
-    estimator e,
-        flown; // flown: while a contact is young, as if the tip had been thrown back
-    double last_voltage;        // in effect at the sample before [V]
-    double since;               // when the contact or the flight began [s]
+    bool touches;        // the tip is at the wall
+    bool young;          // and for so short a time that it may have bounced off unseen
+    estimator e;         // the estimate
+    estimator flown;     // a second one while a contact is young: the tip has bounced off
+    double last_voltage; // in effect at the sample before [V]
+    double since;        // when the contact or the flight began [s]
     double wall, wall_variance; // as last known [rad], [rad2]
     double tip_before, tip_now; // tip angle in flight at the last two samples [rad]
     double met;                 // wall's angle at the touch [rad]
-    // stiffness of the first mode in contact over its nominal one, the sums that it is
-    // the quotient of, and what the nominal one adds to both [N2 s]
+    // stiffness of the first mode in contact over its nominal one; the two sums whose
+    // quotient it is; and what is added to both for the nominal one [N2 s]
     double stiffness, stiff_force, stiff_bend, stiff_nominal;
     // misfit of its predictions to the readings while the hub moved: -2 log likelihood of
     // the readings, each with its own noise and Student's tails; its difference from
     // another model's misfit is the evidence for this one
     double missed;
-    bool moves; // the hub, at the present sample
+    bool moves; // the hub moves at the present sample
 } arm_observer;
 
 // Models the arm that the setup describes, at rest at an angle still to be read, which is
@@ -51,10 +52,10 @@ void arm_observer_start(arm_observer *o, const controller_input *in);
 // Tells the observer, before the first touch, the wall's exact angle [rad].
 void arm_observer_know_wall(arm_observer *o, double angle);
 
-// One sample, as hub_sensors_read returns it, and what that knows of the hub's sensors:
-// the estimate follows the arm over the period before it and takes in all readings. felt:
-// how many readings in a row have shown contact; the first shows more than the force just
-// after an impact and is not taken in.
+// Takes in one sample: the estimate follows the arm over the period before it and takes
+// in all readings. `in` is what hub_sensors_read has returned and `s` what it has
+// learned. `felt` is the number of readings in a row that have shown contact; the force
+// of the first one is not taken in, since it shows the impact too.
 void arm_observer_sample(arm_observer *o, const hub_sensors *s,
                          const controller_input *in, int felt);
 
@@ -65,7 +66,8 @@ void arm_observer_leave(arm_observer *o, double time);
 // Whether the tip, left by a young contact, is on its way to the wall again.
 bool arm_observer_returns(const arm_observer *o);
 
-// The estimate when a command given now takes effect.
+// The estimate at the instant at which a command given now takes effect, with a voltage
+// in effect until then [V].
 estimator arm_observer_ahead(const arm_observer *o, double voltage);
 
 // The index of the torque among the states.

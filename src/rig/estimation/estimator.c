@@ -9,7 +9,8 @@
 
 enum { N = ESTIMATOR_STATES, EXTENDED = N + 1, DOUBLINGS = 60 };
 
-// out = factor x y of matrices of states with the input behind them; `out` may be one.
+// out = factor x y, for matrices of the states extended by the input; `out` may be x or
+// y.
 static void multiply_extended(int size, double out[EXTENDED][EXTENDED],
                               double x[EXTENDED][EXTENDED], double y[EXTENDED][EXTENDED],
                               double factor)
@@ -80,11 +81,11 @@ void sampled_model_step(const sampled_model *m, double *z, double u)
     memcpy(z, next, (size_t)m->n * sizeof z[0]);
 }
 
-// A matrix of states, of which the first rows and columns are in use.
+// A matrix over the states, of which only the first rows and columns are in use.
 typedef double matrix[N][N];
 
-// out = a b, `rows` x `inner` times `inner` x `columns`, of matrices of states; the
-// factors may be transposed.
+// out = a b, where a has `rows` rows and `inner` columns and b `inner` rows and `columns`
+// columns; each factor may be stored transposed. Rows of all three are N apart.
 static inline void multiply_states(int rows, int inner, int columns, double *out,
                                    const double *a, bool transpose_a, const double *b,
                                    bool transpose_b)
@@ -211,7 +212,7 @@ static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
             return false;
         }
 
-        // what x grows by, a'x f a, and g, a f g a'; and the next a, a f a
+        // x grows by a'x f a and g by a f g a'; a becomes a f a
         multiply(n, step, x, false, fa, false);
         multiply(n, step, a, true, step, false);
         multiply(n, fg, a, false, fg, false);
@@ -258,7 +259,7 @@ bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gai
         return false;
     }
 
-    // the cross term goes with u = v - s'z / r
+    // the substitution u = v - s'z/r leaves a cost without a cross term
     matrix a = {{0}}, g = {{0}}, q = {{0}}, x = {{0}};
     double b[N];
     for (int i = 0; i < n; i++) {
@@ -275,7 +276,7 @@ bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gai
         return false;
     }
 
-    // (r + b'x b)^-1 (b'x A + s')
+    // the gain (r + b'x b)^-1 (b'x A + s')
     double bx[N], weight = c->effort;
     for (int j = 0; j < n; j++) {
         bx[j] = 0;

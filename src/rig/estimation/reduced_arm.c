@@ -9,8 +9,8 @@
 
 #define PI 3.14159265358979323846
 
-// Modes above half the Nyquist frequency, of which a sample follows a quarter of a period
-// late at least, are left out.
+// Modes above this share of the Nyquist frequency are left out: a sample would follow
+// them at least a quarter of their period late.
 #define MODES_BELOW 0.5
 
 // The chain that the setup describes, without motor and wall.
@@ -31,7 +31,7 @@ static void nominal_arm(arm *a, const controller_setup *setup, double tip_mass)
         p.arm.k1 = setup->hub_spring;
     }
 
-    // bodies of two links have the inertia they are told, of more that of rods
+    // a link's inertia is the setup's for two links, that of a rod for more
     double m = p.arm.mass / p.arm.links, l = p.arm.length / p.arm.links;
     if (setup->links == 2) {
         p.arm.link_inertia = setup->link_inertia;
@@ -41,8 +41,9 @@ static void nominal_arm(arm *a, const controller_setup *setup, double tip_mass)
     arm_init(a, &p);
 }
 
-// The modes of one state with the quantities of mode_set; shapes come with any scale and
-// leave normalised by M.
+// Fills a set with the lowest of the modes found, up to a frequency [rad/s], but at least
+// one that bends. The shapes may have any scale; those that are kept are normalised to
+// x'M x = 1.
 static void take_modes(mode_set *set, const arm *a, const double *mass, double highest,
                        int found, const double *frequencies, double *shapes)
 {
@@ -56,7 +57,7 @@ static void take_modes(mode_set *set, const arm *a, const double *mass, double h
             break;
         }
 
-        // x'M x and M's momentum of the rotation r
+        // x'M x, the momentum x'M r for the rotation r = (1 ... 1), and the tip
         double *x = &shapes[k * n], norm = 0, momentum = 0, tip = 0;
         for (int i = 0; i < n; i++) {
             for (int j = 0; j < n; j++) {
@@ -68,7 +69,7 @@ static void take_modes(mode_set *set, const arm *a, const double *mass, double h
             }
         }
 
-        // normalised, x'M x = 1
+        // the shape normalised, and what the set says of it
         double scale = 1 / sqrt(norm);
         for (int i = 0; i < n; i++) {
             x[i] *= scale;
@@ -91,7 +92,8 @@ typedef struct chain_modes {
 
 const char reduced_arm_no_memory[] = "there is no memory for its model";
 
-// The modes in contact with a wall of a stiffness, HUGE_VAL: a rigid one [N/m].
+// Frequencies and shapes of the modes in contact with a wall of a stiffness [N/m],
+// HUGE_VAL for a rigid one; `count` becomes their number.
 static status contact_modes(const arm *a, double wall_stiffness, const chain_modes *work,
                             int *count)
 {
@@ -112,7 +114,7 @@ static status contact_modes(const arm *a, double wall_stiffness, const chain_mod
         }
     }
 
-    // their frequencies, of squares that rounding may leave below zero
+    // the eigenvalues are squared frequencies, which rounding may leave below zero
     *count = n;
     if (!symmetric_eigen_pair(n, work->contact, work->copy, work->frequencies,
                               work->scratch)) {
@@ -124,8 +126,8 @@ static status contact_modes(const arm *a, double wall_stiffness, const chain_mod
     return STATUS_OK;
 }
 
-// What a touch keeps of the motion, X = x_c'M x_f, and the inertia of the rotation, r'M r
-// with r = (1 ... 1).
+// Computes the projection of free modes onto those in contact at a touch, X = x_c'M x_f,
+// and the inertia of the rotation, r'M r with r = (1 ... 1).
 static void project_touch(reduced_arm *r, int n, const chain_modes *work)
 {
     r->inertia = 0;
@@ -146,7 +148,8 @@ static void project_touch(reduced_arm *r, int n, const chain_modes *work)
     }
 }
 
-// The modes of a chain that stay, free and in contact. NULL, or why it has none.
+// Computes the modes of a chain that are kept, free and in contact. NULL, or a sentence
+// that says why there are none.
 static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *setup,
                           double wall_stiffness, const chain_modes *work)
 {
@@ -155,7 +158,7 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
     int free_count = 0, contact_count = 0;
     modes_matrices(a, work->mass, work->stiffness);
 
-    // both sets of modes
+    // the free modes, then those in contact, whose shapes have their own memory
     status code =
         modes_compute(a, HUB_FREE, TIP_FREE, &free_count, work->frequencies, work->free);
     if (code == STATUS_OK) {

@@ -15,15 +15,16 @@
 #define SOFT_SPEED  0.2  // of a soft touch, for every newton wanted [rad/s/N],
 #define MOST_SPEED  0.45 // at most [rad/s],
 #define LEAST_SPEED 0.12 // and no less, so as to come in time [rad/s],
-#define LEAST_LINKS 0.32 // nor than this with more than two links [rad/s]
+#define LEAST_LINKS 0.32 // least speed with more than two links [rad/s]
 // share of the effort that damping the tip may cost on a wall that gives
 #define SOFT_EFFORT 0.25
-// of p h over 1, below which the force does not run away with the motion
+// least excess of p h over 1 for which the divergence of the force is computed
 #define LEAST_MARGIN 0.05
 
-// Modal coordinates and rates of one state over a period, under a command that gives so
-// much torque each [N m]; the angle of the rotation, which nothing brings back, is left
-// out where `first` is 1.
+// Samples the equations of modal coordinates and rates, free or in contact, under a
+// command whose unit gives a torque [N m]. The states are the coordinates from `first`
+// on, then all rates; with `first` = 1 the angle of the free arm's rotation, on which no
+// force depends, is left out.
 static void command_model(const controller_setup *setup, const mode_set *set, int first,
                           double torque_per_command, sampled_model *model)
 {
@@ -46,8 +47,9 @@ static void command_model(const controller_setup *setup, const mode_set *set, in
     sampled_model_init(model, k + n, rate, input, setup->period);
 }
 
-// Gains for which the energy of the motion, relative to the wanted rotation or to the
-// rest, and an effort together are the least; `first` as of command_model.
+// Finds the gains whose feedback makes the least of the integral of twice the energy of
+// the deviation plus effort times the squared command. `first` is that of command_model.
+// False if the Riccati equation has no stabilising solution.
 static bool find_gain(const controller_setup *setup, const mode_set *set, int first,
                       double effort, double *gains)
 {
@@ -56,7 +58,7 @@ static bool find_gain(const controller_setup *setup, const mode_set *set, int fi
     quadratic_cost cost = {.growth = 1};
     command_model(setup, set, first, setup->torque_per_volt, &model);
 
-    // twice the energy: of motion, and of bending
+    // twice the energy, sum a_i'^2 + w_i^2 a_i^2: of motion, and of bending
     for (int i = 0; i < n; i++) {
         double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
         motion[n - first + i] = 1;
@@ -70,8 +72,9 @@ static bool find_gain(const controller_setup *setup, const mode_set *set, int fi
     return quadratic_gain(&model, &cost, gains + first);
 }
 
-// In flight: the effort with which the rotation alone has a time constant [s]; the angle
-// itself is not fed back.
+// The gains in flight, with the effort for which the rotation alone would have a time
+// constant [s]: a' = h K u with u = -a'/sqrt(effort) decays in sqrt(effort)/(h K). The
+// angle itself is not fed back.
 static bool find_flight_gain(const observer_design *d, const controller_setup *setup,
                              double time, double *gains)
 {
@@ -80,9 +83,10 @@ static bool find_flight_gain(const observer_design *d, const controller_setup *s
     return find_gain(setup, set, 1, time_constant * time_constant, gains);
 }
 
-// In contact: the effort with which the first mode alone is critically damped: a'' = -w^2
-// a + h K u with u = -a'/sqrt(effort) has 2 w for h K / sqrt(effort). At a wall that
-// gives the tip's swinging is to be damped, too.
+// The gains in contact, with the effort for which the first mode alone would be
+// critically damped: a'' = -w^2 a + h K u with u = -a'/sqrt(effort) is, for h
+// K/sqrt(effort) = 2 w. At a wall that gives, the effort is less, so that the swinging of
+// the tip is damped too.
 static bool find_press_gain(observer_design *d, const controller_setup *setup, bool gives)
 {
     const mode_set *set = &d->observer.arm.contact;
@@ -92,11 +96,12 @@ static bool find_press_gain(observer_design *d, const controller_setup *setup, b
     return find_gain(setup, set, 0, effort, d->press_gain);
 }
 
-// The speeds. After a touch in uniform rotation v the first mode has a' = p v. With the
+// Computes the speeds of the approach and the length of its changes of speed. After a
+// touch in uniform rotation v the first mode has a' = p v. With the
 // force as input it obeys a'' = s^2 (a - h L f/w^2), s^2 = w^2/(p h - 1): the force w^2
-// (a + a'/s)/(h L) stops it, after a time of noticing in which it grows as exp(s t). A
-// constant acceleration for one period of the free arm's first vibration leaves none
-// behind.
+// (a + a'/s)/(h L) stops it. Until the first command after the touch takes effect, this
+// force grows as exp(s t). A constant acceleration for one period of the free arm's first
+// vibration leaves none behind.
 static void find_speeds(observer_design *d, const controller_setup *setup,
                         const observer_task *task)
 {
@@ -104,13 +109,14 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
     const mode_set *set = &arm->contact;
     const double square = set->square[0], h = set->hub[0], p = set->momentum[0];
 
-    // the fastest is what the approach voltage holds against friction
+    // the top speed is the one that the approach voltage keeps up against friction
     double held = setup->torque_per_volt * fabs(task->approach_voltage) - setup->stiction;
     d->top_speed = fmax(0, held) / fmax(setup->hub_damping, 1e-9);
     d->touch_speed = d->top_speed;
 
-    // the touch is slow enough to be stopped, and fast enough for a rise that begins with
-    // the least force: f = 2 x - w for the stopping force x (observer_paths.h)
+    // The touch is to be slow enough to be stopped by a force x for which the rise begins
+    // with the least force: f = 2 x - w (observer_paths.h) is that share of w for x =
+    // (1 + share) w/2
     d->divergence = sqrt(square / fmax(p * h - 1, LEAST_MARGIN));
     if (p * h > 1) {
         double s = d->divergence, share = (1 + OBSERVER_LEAST_FORCE) / 2;
@@ -119,8 +125,8 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
         d->touch_speed = fmin(d->touch_speed, share * stopped);
     }
 
-    // a wall that throws back is met softly; more links than two vibrate off under the
-    // small force that a soft touch begins with
+    // A soft touch keeps a wall from throwing the tip back; but an arm of more than two
+    // links vibrates off the wall under the small force that a soft touch begins with
     if (arm->free.count > 2) {
         d->arrival_speed = fmin(d->top_speed, fmax(d->touch_speed, LEAST_LINKS));
     } else {
@@ -165,12 +171,13 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 
 // --- the arms that the law holds possible ----------------------------------------------
 
-// ratio of stiffnesses up to which an arm is one with that told of
+// ratio of stiffnesses up to which an arm is not told apart from the one given
 #define AS_STIFF 1.25
-#define HUB_GIVES                                                                        \
-    (1.0 / 6)       // of the beam's compliance at the wall, that of a hub on a spring
-#define NO_DOUBT 28 // of -2 log likelihood, 2 log(1e6),
-// more of it where bounces or a wrong inertia look like the arm
+// compliance of a hub on a spring, as a share of the beam's at the wall
+#define HUB_GIVES (1.0 / 6)
+// difference of -2 log likelihood that leaves no doubt, 2 log(1e6)
+#define NO_DOUBT 28
+// further difference for arms that bounces or a wrong inertia may look like
 #define HANDICAP 30
 
 const observer_design *observer_arms_design(const observer_arms *a)
@@ -188,8 +195,11 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
 {
     static const int links[] = {2, 3, 6};
     static const double masses[] = {0.04, 0.08}; // [kg]
-    static const double walls[] = {60, 150, 375,
-                                   940}; // a frequency within a quarter [N/m]
+
+    // steps that leave the frequency of any wall between within a quarter [N/m]
+    static const double walls[] = {60, 150, 375, 940};
+
+    // the arm that the setup describes
     a->count = a->on = 0;
     a->thrown = false;
     const char *refusal = observer_design_init(&a->arms[a->count++], setup, task);
@@ -198,7 +208,7 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
     }
 
     // beams of other numbers of links
-    const double told = reduced_arm_compliance(&a->arms[0].observer.arm);
+    const double compliance = reduced_arm_compliance(&a->arms[0].observer.arm);
     for (size_t i = 0; i < sizeof links / sizeof links[0] && refusal == NULL; i++) {
         observer_design *d = &a->arms[a->count];
         controller_setup other = *setup;
@@ -208,14 +218,14 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
             break;
         }
 
-        // one as stiff as that told of is none of its own
-        const double ratio = reduced_arm_compliance(&d->observer.arm) / told;
+        // one as stiff as the arm of the setup is not kept
+        const double ratio = reduced_arm_compliance(&d->observer.arm) / compliance;
         if (fmax(ratio, 1 / ratio) > AS_STIFF) {
             a->count++;
         }
     }
 
-    // a spring k1 at the hub gives 4 k2/k1 of what a beam of two links does
+    // a hub on a spring k1, whose compliance is 4 k2/k1 that of a beam of two links
     controller_setup other = *setup;
     other.hub_spring = 4 * setup->k2 / HUB_GIVES;
     if (refusal == NULL && setup->hub_spring > 2 * other.hub_spring) {
@@ -281,12 +291,15 @@ void observer_arms_leave(observer_arms *a, double time)
 
 bool observer_arms_choose(observer_arms *a)
 {
+    // a contact does not show a mass at the tip
     const bool touches = observer_arms_observer(a)->touches;
     const int count = touches ? a->loaded : a->count;
+
+    // another arm has to explain the readings better than the present one by NO_DOUBT
     int best = a->on;
     double least = observer_arms_observer(a)->missed - NO_DOUBT;
     for (int i = 0; i < count; i++) {
-        // walls that give and masses have to be that much better
+        // walls that give and masses at the tip have to be better still
         const bool gives = i >= a->giving && i < a->loaded;
         double missed = a->arms[i].observer.missed;
         if (i >= a->giving) {
@@ -297,6 +310,7 @@ bool observer_arms_choose(observer_arms *a)
             least = missed;
         }
     }
+
     if (best == a->on) {
         return false;
     }

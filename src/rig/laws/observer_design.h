@@ -22,10 +22,10 @@ typedef struct observer_design {
     sampled_model plan_model;   // and without damping, which the plan moves
 } observer_design;
 
-// What the design is to do with the arm of a setup.
+// What the law is to do with the arm of a setup.
 typedef struct observer_task {
     double force;            // to press with [N]
-    double stopping_force;   // that may be used to stop the tip [N]
+    double stopping_force;   // greatest force that may stop the tip [N]
     double approach_voltage; // of the fastest approach [V]
     double tip_mass;         // that the tip carries [kg]
     double wall_stiffness;   // of a wall that gives, 0: a rigid one [N/m]
@@ -38,29 +38,28 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 
 // --- the arms that the law holds possible ----------------------------------------------
 
-// The arms that the law `observer` holds possible: the one that it is told of, beams of
-// other numbers of links, a hub that gives, and the arm told of at walls that give. Each
-// has an observer and gains of its own; all observers follow the same readings, and the
-// law goes on with the arm that foretells them best.
+// The arms that the law `observer` holds possible: the arm of its setup, beams of other
+// numbers of links, a hub that gives, and the arm of the setup at walls that give and
+// with masses at its tip. Each has an observer and gains of its own. All observers follow
+// the same readings, and the law goes by the arm whose observer predicts them best.
 
 enum { OBSERVER_MOST_ARMS = 11 };
 
 typedef struct observer_arms {
-    observer_design arms[OBSERVER_MOST_ARMS]; // the first is the one told of
-    int count, on;                            // on: the one that the law goes by
-    hub_sensors sensors;                      // that all of them follow
-    bool thrown; // the tip has left the wall, which one that gives so much would not have
-                 // let it
-    int giving;  // the first of those at a wall that gives
-    int loaded;  // the first of those with a mass at the tip, which no contact shows
+    observer_design arms[OBSERVER_MOST_ARMS]; // the first is the setup's
+    int count, on;       // on: the index of the one that the law goes by
+    hub_sensors sensors; // that all of them follow
+    bool thrown;         // the tip has left the wall, so it is none that gives
+    int giving;          // index of the first arm at a wall that gives
+    int loaded;          // index of the first arm with a mass at its tip
 } observer_arms;
 
-// Designs for the arm that the setup describes and for those that it may be instead: two,
-// three and six links and a hub that gives a sixth of what the beam does, but for those
-// that are as stiff at the wall as the one told, within a quarter, and so are one with
-// it; and at walls of 60 to 940 N/m, on which the tip swings slowly enough to be
-// followed. The law begins with the arm told of. NULL, or a sentence that says why that
-// cannot be.
+// Designs for the arm that the setup describes and for those that it may be instead: arms
+// of two, three and six links; a hub on a spring with a sixth of the beam's compliance;
+// walls of 60 to 940 N/m, on which the tip swings slowly enough to be followed; and
+// masses at the tip. An arm of other links whose stiffness at the wall is within a
+// quarter of the given arm's is left out, since readings do not tell the two apart. The
+// law begins with the arm of the setup. NULL, or a sentence that says why that cannot be.
 const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
                                const observer_task *task);
 
@@ -68,15 +67,15 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
 const observer_design *observer_arms_design(const observer_arms *a);
 const arm_observer *observer_arms_observer(const observer_arms *a);
 
-// What becomes of all observers: arm_observer_start, _know_wall, _sample, _touch and
-// _leave.
+// The functions arm_observer_start, _know_wall, _sample, _touch and _leave for the
+// observers of all arms.
 void observer_arms_start(observer_arms *a, const controller_input *in);
 void observer_arms_know_wall(observer_arms *a, double angle);
 void observer_arms_sample(observer_arms *a, const controller_input *in, int felt);
 void observer_arms_touch(observer_arms *a, double time);
 void observer_arms_leave(observer_arms *a, double time);
 
-// Goes over to the arm that foretells the readings best, where they leave no doubt: by a
-// likelihood ratio of a million, since the errors of a wrong parameter come many in a
-// row. Returns whether that is another than before.
+// Goes over to the arm whose observer predicts the readings best, where they leave no
+// doubt: by a likelihood ratio of a million, since a wrong parameter causes many errors
+// in a row. Returns whether that is another arm than before.
 bool observer_arms_choose(observer_arms *a);

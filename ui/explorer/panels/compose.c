@@ -71,7 +71,7 @@ static void draw_title(const explorer_model *model, screen *s)
 // A part of a bar.
 typedef struct bar_item {
     char text[96]; // "" for none
-    int rank;      // the lower ones stay where not all fit
+    int rank;      // 0 first: where not all items fit, those of the highest ranks go
 } bar_item;
 
 enum { BAR_ITEMS = 16 };
@@ -82,6 +82,8 @@ typedef struct bar {
     int count;
 } bar;
 
+// Adds an item at the right end of a bar. An item of a low rank is kept where those of
+// higher ranks have no room.
 static void bar_add(bar *b, int rank, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
