@@ -33,7 +33,7 @@ static const char *const panel_keys[] = {
 };
 enum { PANEL_KEYS = sizeof panel_keys / sizeof panel_keys[0] };
 
-// A run of the scenario with other parameters, all else of which is borrowed.
+// A run of a scenario whose parameters were changed; all else in it is borrowed.
 typedef struct one_run {
     scenario scenario;
     run_options options;
@@ -42,6 +42,7 @@ typedef struct one_run {
     fault *fault;
 } one_run;
 
+// Runs r->scenario and keeps its summary, or all of it; a failure names the step.
 static status run_with_step(void *context)
 {
     one_run *r = context;
@@ -140,7 +141,8 @@ static void values_of(const summary *s, double values[STUDY_QUANTITIES])
     }
 }
 
-// One run, with its cost. A method that fails at a step has no point there.
+// Runs a method at the step of the point, and finds its errors against the reference and
+// its cost. A method that fails at a step has errors of NaN there.
 static status study_one(const scenario *s, method_kind method, const double *reference,
                         run_monitor *monitor, study_point *point)
 {
@@ -167,18 +169,16 @@ static status study_one(const scenario *s, method_kind method, const double *ref
 static void prepare_points(method_study *study)
 {
     static const double mantissas[] = {10, 5, 2};
-    const double none = (double)NAN;
+    const double unknown = (double)NAN;
     for (int m = 0; m < STUDY_METHODS; m++) {
-        double unit = 1000; // a second in those of the decade
+        double per_second = 1000; // the decade's unit of time: 1 ms, 0.1 ms and so on
         for (int i = 0; i < STUDY_STEPS; i++) {
             if (i > 0 && i % 3 == 0) {
-                unit *= 10;
-            } else {
-                unit *= 1;
+                per_second *= 10;
             }
-            study->points[m][i] = (study_point){.step = mantissas[i % 3] / unit,
-                                                .cost = none,
-                                                .error = {none, none, none}};
+            study->points[m][i] = (study_point){.step = mantissas[i % 3] / per_second,
+                                                .cost = unknown,
+                                                .error = {unknown, unknown, unknown}};
         }
     }
 }
@@ -190,7 +190,7 @@ status method_study_compute(const scenario *s, run_monitor *monitor, method_stud
     one_run r = {*s, {.monitor = monitor}, .fault = f};
     prepare_points(study);
 
-    // what the errors are measured against
+    // the reference against which errors are measured
     r.scenario.parameters.method.name = METHOD_EVENT;
     r.scenario.parameters.method.step = study->reference_step = REFERENCE_STEP;
     status code = run_with_step(&r);

@@ -14,13 +14,16 @@
 #include <cminpack.h>
 #endif
 
-#define DIFFERENCE 1e-4 // by which an unknown is changed either way, of its scale
-#define OUTSIDE    1e4  // residual of a parameter that leaves its range by all its width
-#define TOLERANCE  1e-9 // of the sum of squares, and of the unknowns
+#define DIFFERENCE 1e-4 // step of the Jacobian's differences, over an unknown's scale
+#define OUTSIDE    1e4  // residual of a parameter beyond its range by the range's width
+#define TOLERANCE  1e-9 // relative, of the sum of squares and of the unknowns
 
-enum { MOST_STEPS = 60, REFINED = 2 };
+enum {
+    MOST_STEPS = 60, // of the least squares
+    REFINED = 2      // starts from which the least squares are solved
+};
 
-// The unknowns of what a trace has of its own, in which one is about 1.
+// Typical sizes of the unknowns that each trace has of its own.
 static const double own_scale[OWNS] = {
     [OWN_SHIFT] = 1e-3, [OWN_OFFSET] = 1e-2, [OWN_ANGLE] = 1e-2, [OWN_VELOCITY] = 1e-1};
 
@@ -58,7 +61,8 @@ void identify_finish(identification *id)
 
 // --- unknowns --------------------------------------------------------------------------
 
-// Lists them: the parameters, then what each trace has of its own and is fitted.
+// Lists the unknowns of the fit: the parameters, then those of each trace. A trace
+// without an encoder tells nothing of the encoder's offset and of the angle at its start.
 static void list_unknowns(identification *id)
 {
     id->unknowns = id->count;
@@ -67,8 +71,11 @@ static void list_unknowns(identification *id)
     }
     for (int k = 0; k < id->trace_count; k++) {
         recorded_trace *t = &id->traces[k];
-        const bool turns = t->reading[CHANNEL_ENCODER] != NULL;
-        const bool fitted[OWNS] = {true, turns, turns, t->fits_velocity};
+        const bool has_encoder = t->reading[CHANNEL_ENCODER] != NULL;
+        const bool fitted[OWNS] = {[OWN_SHIFT] = true,
+                                   [OWN_OFFSET] = has_encoder,
+                                   [OWN_ANGLE] = has_encoder,
+                                   [OWN_VELOCITY] = t->fits_velocity};
         for (int own = 0; own < OWNS; own++) {
             if (fitted[own]) {
                 id->unknown[id->unknowns++] =
@@ -78,8 +85,8 @@ static void list_unknowns(identification *id)
     }
 }
 
-// The value that a number gives an unknown in its scale; a parameter stays within its
-// range.
+// The value of unknown n at x, x being in units of its scale; a parameter's value is
+// limited to its range.
 static double unknown_value(const identification *id, int n, double x)
 {
     const unknown *u = &id->unknown[n];
@@ -91,13 +98,13 @@ static double unknown_value(const identification *id, int n, double x)
 
 // --- batches of runs -------------------------------------------------------------------
 
-// A piece: a trace under a set of unknowns, to `out`.
+// A piece of work: one trace's run under one set of unknowns.
 typedef struct piece {
     int trace;
-    const double *x;
-    double *out;
-    bool judge;
-    fault why; // the run failed
+    const double *x; // the unknowns, in their scales
+    double *out;     // receives the residuals
+    bool judge;      // also fills in the trace's errors of contact and peak
+    fault why;       // why the run failed, STATUS_OK if it did not
 } piece;
 
 typedef struct batch_of_runs {
@@ -106,29 +113,34 @@ typedef struct batch_of_runs {
     size_t count;
 } batch_of_runs;
 
+// The pool's work: runs piece i and leaves its residuals. A run that fails does not end
+// the batch; its status is the result.
 static void compute_piece(void *context, size_t i, void *scratch, void *result)
 {
     const batch_of_runs *b = context;
     const identification *id = b->id;
-    piece *here = &b->pieces[i];
-    recorded_trace *t = &b->id->traces[here->trace];
+    piece *work = &b->pieces[i];
+    recorded_trace *t = &b->id->traces[work->trace];
     parameters p = id->base->parameters;
     double own[OWNS];
     fault ignored;
     (void)scratch;
+
+    // the scenario's parameters and the trace's own numbers, with the unknowns put in
     memcpy(own, t->own, sizeof own);
     for (int n = 0; n < id->unknowns; n++) {
         const unknown *u = &id->unknown[n];
-        const double value = unknown_value(id, n, here->x[n]);
+        const double value = unknown_value(id, n, work->x[n]);
         if (u->trace < 0) {
             (void)sweep_axis_apply(&id->fit[u->index].axis, value, &p, &ignored);
-        } else if (u->trace == here->trace) {
+        } else if (u->trace == work->trace) {
             own[u->index] = value;
         }
     }
-    here->why = (fault){.code = STATUS_OK, .path = ""};
-    identify_residuals(id, t, &p, own, here->judge, here->out, &here->why);
-    *(status *)result = here->why.code;
+
+    work->why = (fault){.code = STATUS_OK, .path = ""};
+    identify_residuals(id, t, &p, own, work->judge, work->out, &work->why);
+    *(status *)result = work->why.code;
 }
 
 static status collect_piece(void *context, size_t i, const void *result, fault *f)
@@ -144,23 +156,25 @@ static status collect_piece(void *context, size_t i, const void *result, fault *
     return STATUS_OK;
 }
 
-// What draws a parameter back that leaves its range; *slope: by its unknown.
-static double draw_back(const fitted_parameter *fit, double x, double *slope)
+// The residual that draws a parameter back into its range: 0 within, in proportion to the
+// distance outside. *slope is its derivative by the unknown x.
+static double range_penalty(const fitted_parameter *fit, double x, double *slope)
 {
     const double value = x * fit->scale, width = fit->high_most - fit->low_most;
-    const double beyond =
+    const double outside =
         fmax(value - fit->high_most, 0) + fmin(value - fit->low_most, 0);
-    if (beyond != 0) {
+    if (outside != 0) {
         *slope = OUTSIDE * fit->scale / fmin(width, fit->scale);
     } else {
         *slope = 0;
     }
-    return beyond / fmin(width, fit->scale) * OUTSIDE;
+    return outside / fmin(width, fit->scale) * OUTSIDE;
 }
 
-// Residuals of `sets` sets of unknowns, one behind the other: of each trace, or for set s
-// of trace only[s] alone (-1: of each; NULL: each of all), then what draws parameters
-// back. `why` (may be NULL) receives what stopped the first run that failed.
+// Computes the residuals of `sets` sets of unknowns x, one set after the other: those of
+// all traces, then the penalties of the parameters. Of set s only trace only[s] is run;
+// with only[s] = -1, or without `only` (NULL), every trace is. `why` (may be NULL)
+// receives the fault of the first run that failed.
 static status residuals_of(identification *id, const double *x, int sets, const int *only,
                            bool judge, double *out, fault *why, fault *f)
 {
@@ -180,7 +194,7 @@ static status residuals_of(identification *id, const double *x, int sets, const 
             out += id->traces[k].residuals;
         }
         for (int j = 0; j < id->count; j++) {
-            *out++ = draw_back(&id->fit[j], x[j], &slope);
+            *out++ = range_penalty(&id->fit[j], x[j], &slope);
         }
     }
     const pool_work work = {.context = &b,
@@ -197,8 +211,9 @@ static status residuals_of(identification *id, const double *x, int sets, const 
     return code;
 }
 
-// The Jacobian, column by column, by central differences: two runs of each trace that an
-// unknown has a say in, all in one batch.
+// The Jacobian of the residuals by the unknowns, column by column, by central
+// differences. Sets 2 n and 2 n + 1 have unknown n lowered and raised; a trace's own
+// unknown needs runs of that trace alone. All runs are one batch.
 static status jacobian_of(identification *id, const double *x, double *jacobian, fault *f)
 {
     const size_t n = (size_t)id->unknowns, m = id->residuals;
@@ -217,25 +232,32 @@ static status jacobian_of(identification *id, const double *x, double *jacobian,
         }
         only[s] = id->unknown[s / 2].trace;
     }
-    TRY(residuals_of(id, moved, (int)(2 * n), only, false, out, NULL, f));
-    for (size_t i = 0; i < m * n; i++) {
-        const double *lower = out + (i / m * 2 * m) + i % m;
-        jacobian[i] = (lower[m] - lower[0]) / (2 * DIFFERENCE);
+    const bool judge = false;
+    TRY(residuals_of(id, moved, (int)(2 * n), only, judge, out, NULL, f));
+    for (size_t column = 0; column < n; column++) {
+        const double *lowered = out + 2 * column * m, *raised = lowered + m;
+        for (size_t row = 0; row < m; row++) {
+            jacobian[column * m + row] = (raised[row] - lowered[row]) / (2 * DIFFERENCE);
+        }
     }
-    for (int j = 0; j < id->count; j++) {
-        draw_back(&id->fit[j], x[j],
-                  &jacobian[(size_t)(j + 1) * m - (size_t)(id->count - j)]);
+
+    // the penalties, the last rows of a column, have their slopes in closed form
+    const size_t first_penalty = m - (size_t)id->count;
+    for (size_t j = 0; j < (size_t)id->count; j++) {
+        range_penalty(&id->fit[j], x[j], &jacobian[j * m + first_penalty + j]);
     }
     return STATUS_OK;
 }
 
 // --- least squares ---------------------------------------------------------------------
 
-// The unknowns that left the least of all that were evaluated.
+// The unknowns with the least sum of squares of all that were evaluated.
 typedef struct best_yet {
-    double x[IDENTIFY_UNKNOWNS], least; // NaN before the first
+    double x[IDENTIFY_UNKNOWNS];
+    double least; // the sum of squares; NaN before the first
 } best_yet;
 
+// What MINPACK hands to the function that it minimises.
 typedef struct least_squares {
     identification *id;
     best_yet *best;
@@ -252,28 +274,32 @@ static double sum_of_squares(const double *residual, size_t count)
     return sum;
 }
 
-// Keeps the unknowns of a set that leaves less than those before, if there were any.
+// Keeps a set of unknowns as the best one if its sum of squares is below the least one so
+// far, or the first one.
 static void keep_least(best_yet *best, const identification *id, const double *x,
-                       double left)
+                       double squares)
 {
-    if (!(left >= best->least)) {
-        best->least = left;
+    if (!(squares >= best->least)) {
+        best->least = squares;
         memcpy(best->x, x, (size_t)id->unknowns * sizeof *x);
     }
 }
 
 #ifdef IMPACTLAB_MINPACK
+// MINPACK's function: with the flag 1 it asks for the residuals at x, else for the
+// Jacobian. A negative result ends the search.
 static int evaluate_for_minpack(void *context, int m, int n, const double *x,
-                                double *residual, double *jacobian, int rows, int asked)
+                                double *residual, double *jacobian, int rows, int flag)
 {
     least_squares *l = context;
+    const bool wants_residuals = flag == 1, judge = false;
     (void)m, (void)n, (void)rows;
-    if (asked == 1) {
-        l->code = residuals_of(l->id, x, 1, NULL, false, residual, NULL, l->f);
+    if (wants_residuals) {
+        l->code = residuals_of(l->id, x, 1, NULL, judge, residual, NULL, l->f);
     } else {
         l->code = jacobian_of(l->id, x, jacobian, l->f);
     }
-    if (l->code == STATUS_OK && asked == 1) {
+    if (l->code == STATUS_OK && wants_residuals) {
         keep_least(l->best, l->id, x, sum_of_squares(residual, l->id->residuals));
     }
     if (l->code == STATUS_OK) {
@@ -282,7 +308,7 @@ static int evaluate_for_minpack(void *context, int m, int n, const double *x,
     return -1;
 }
 
-// Levenberg and Marquardt's method from x on.
+// Minimises the sum of squares by Levenberg and Marquardt's method, from x on.
 static status minimise(identification *id, double *x, double *residual, double *jacobian,
                        best_yet *best, fault *f)
 {
@@ -308,15 +334,17 @@ static status minimise(identification *id, double *x, double *residual, double *
 }
 #endif
 
-// The scenario's values; where a trace starts is what its encoder says, or, with an
-// encoder that counts from anywhere, what the scenario says.
-static void begin_with(const identification *id, bool counted, double *x)
+// Sets the unknowns x to start from: the scenario's parameters, and for each trace its
+// own first guess. That takes the angle at the start from the encoder. With
+// `offset_unknown` the encoder may count from any angle: the scenario tells the angle,
+// and the difference goes to the encoder's offset.
+static void begin_with(const identification *id, bool offset_unknown, double *x)
 {
     const double angle = id->base->parameters.initial.angle;
     for (int n = 0; n < id->unknowns; n++) {
         const unknown *u = &id->unknown[n];
         double value = *u->value;
-        if (counted && u->trace >= 0) {
+        if (offset_unknown && u->trace >= 0) {
             const double *own = id->traces[u->trace].own;
             if (u->index == OWN_ANGLE) {
                 value = angle;
@@ -328,11 +356,12 @@ static void begin_with(const identification *id, bool counted, double *x)
     }
 }
 
-// The sets of unknowns to begin with, x[starts * unknowns], and what each leaves,
-// rest[starts]: the scenario's, and those drawn from the ranges or from half to twice the
-// scenario's.
-static status draw_beginnings(identification *id, double *x, double *rest, best_yet *best,
-                              fault *f)
+// Chooses the sets of unknowns to start from, x[starts * unknowns], and computes the sum
+// of squares of each, squares[starts]. The first two have the scenario's parameters;
+// those of the others are drawn from their ranges, or from half to twice the scenario's
+// value.
+static status draw_starts(identification *id, double *x, double *squares, best_yet *best,
+                          fault *f)
 {
     const size_t m = id->residuals;
     random_generator random;
@@ -340,52 +369,58 @@ static status draw_beginnings(identification *id, double *x, double *rest, best_
     if (out == NULL) {
         return fault_no_memory(f);
     }
+
     random_seed(&random, id->seed);
     for (int s = 0; s < id->starts; s++) {
-        double *here = x + s * id->unknowns;
-        begin_with(id, s % 2 != 0, here);
+        double *start = x + s * id->unknowns;
+        const bool offset_unknown = s % 2 != 0;
+        begin_with(id, offset_unknown, start);
         for (int i = 0; i < id->count && s > 1; i++) {
             const fitted_parameter *fit = &id->fit[i];
             const double u = random_uniform(&random);
             if (fit->axis.is_range) {
-                here[i] = sweep_axis_value_at(&fit->axis, u) / fit->scale;
+                start[i] = sweep_axis_value_at(&fit->axis, u) / fit->scale;
             } else {
                 const double factor = u < 0.5 ? 0.5 + u : 2 * u;
-                here[i] = here[i] * factor;
+                start[i] = start[i] * factor;
             }
         }
     }
-    TRY(residuals_of(id, x, id->starts, NULL, false, out, NULL, f));
+
+    const bool judge = false;
+    TRY(residuals_of(id, x, id->starts, NULL, judge, out, NULL, f));
     for (int s = 0; s < id->starts; s++) {
-        rest[s] = sum_of_squares(out + (size_t)s * m, m);
-        keep_least(best, id, x + s * id->unknowns, rest[s]);
+        squares[s] = sum_of_squares(out + (size_t)s * m, m);
+        keep_least(best, id, x + s * id->unknowns, squares[s]);
     }
     return STATUS_OK;
 }
 
-// Searches with room for the beginnings and what they leave, a set of residuals and the
-// Jacobian.
+// Searches the least sum of squares. x has room for the starts and, behind them, for
+// their sums of squares, one set of residuals and the Jacobian.
 static status search_from_starts(identification *id, double *x, best_yet *best, fault *f)
 {
-    double *rest = x + id->starts * id->unknowns, *residual = rest + id->starts,
-           *jacobian = residual + id->residuals;
-    TRY(draw_beginnings(id, x, rest, best, f));
+    double *squares = x + id->starts * id->unknowns;
+    double *residual = squares + id->starts;
+    double *jacobian = residual + id->residuals;
+    TRY(draw_starts(id, x, squares, best, f));
 
-    // those that leave the least to the end
+    // minimise from the starts with the least sums of squares
     for (int tried = 0; tried < REFINED; tried++) {
-        int s = 0;
+        int least = 0;
         for (int i = 1; i < id->starts; i++) {
-            if (rest[i] < rest[s]) {
-                s = i;
+            if (squares[i] < squares[least]) {
+                least = i;
             }
         }
-        rest[s] = HUGE_VAL;
-        TRY(minimise(id, x + s * id->unknowns, residual, jacobian, best, f));
+        squares[least] = HUGE_VAL; // not to be chosen again
+        TRY(minimise(id, x + least * id->unknowns, residual, jacobian, best, f));
     }
     return STATUS_OK;
 }
 
-// What a search that was stopped leaves: values that nobody has judged.
+// Fills in the results of a search that was stopped: the sum of squares is known, and no
+// number that judges the fit is.
 static void leave_unjudged(identification *id, double least)
 {
     id->chi_square = least;
@@ -403,7 +438,8 @@ static void leave_unjudged(identification *id, double least)
     }
 }
 
-// Fits with the same room, and judges what came of it.
+// Fits the unknowns with the room of search_from_starts, runs the best ones once more,
+// and judges the fit by their residuals and Jacobian.
 static status fit_with(identification *id, double *x, fault *f)
 {
     double *jacobian = x + id->starts * (id->unknowns + 1) + id->residuals;
@@ -411,7 +447,8 @@ static status fit_with(identification *id, double *x, fault *f)
     fault why = {.code = STATUS_OK};
     status code = search_from_starts(id, x, &best, f);
     if (code == STATUS_OK) {
-        code = residuals_of(id, best.x, 1, NULL, true, id->residual, &why, f);
+        const bool judge = true;
+        code = residuals_of(id, best.x, 1, NULL, judge, id->residual, &why, f);
     }
     if (code == STATUS_OK && why.code != STATUS_OK) {
         *f = why;
@@ -421,7 +458,7 @@ static status fit_with(identification *id, double *x, fault *f)
         code = jacobian_of(id, best.x, jacobian, f);
     }
 
-    // the best there is, if there is any
+    // keep the best values found, also of a search that was stopped
     if (isnan(best.least) || (code != STATUS_OK && code != STATUS_STOPPED)) {
         return code;
     }
@@ -440,10 +477,10 @@ status identify_fit(identification *id, fault *f)
     assert(id->trace_count > 0);
     list_unknowns(id);
 
-    // what the runs with the recorded command do not take has no best value
+    // a parameter without effect in runs under the recorded command cannot be fitted
     scenario made;
-    const bool runs = identify_scenario(id, 0, &made, NULL) == STATUS_OK;
-    for (int i = 0; runs && i < id->count; i++) {
+    const bool can_run = identify_scenario(id, 0, &made, NULL) == STATUS_OK;
+    for (int i = 0; can_run && i < id->count; i++) {
         const sweep_axis *axis = &id->fit[i].axis;
         const char *why = effect_none_from(&made, axis->parameter, -1);
         if (why != NULL) {
@@ -452,6 +489,7 @@ status identify_fit(identification *id, fault *f)
         }
     }
 
+    // the residuals, of which there have to be more than unknowns
     id->residuals = (size_t)id->count;
     for (int k = 0; k < id->trace_count; k++) {
         id->residuals += id->traces[k].residuals;

@@ -1,4 +1,5 @@
-// How well parameters are known, and whether the model is one.
+// Judges a fit: how well its parameters are known, and whether the model explains the
+// recorded readings.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,11 +8,11 @@
 #include "src/base/plain_math.h"
 #include "src/study/identify.h"
 
-#define QUANTILE 1.959963984540054 // of 95 %
-#define BLOCK    0.05              // in which residuals may be correlated [s]
-// singular value below which a combination is off by all its value
+#define QUANTILE 1.959963984540054 // of the normal distribution, for 95 %
+#define BLOCK    0.05              // time over which residuals may be correlated [s]
+// singular value below which the error of a combination exceeds its value
 #define LEAST_KNOWN 1.0
-#define NO_SAY      1e-12 // share of the largest eigenvalue below which there is none
+#define NO_SAY      1e-12 // eigenvalue, over the largest one, that counts as zero
 // standard normal deviate that white residuals exceed once in 4000
 #define WHITE       3.5
 #define NOISE_KNOWN 2.0 // factor within which a bench knows its noise
@@ -20,13 +21,18 @@
 
 // --- whiteness -------------------------------------------------------------------------
 
-// Ljung and Box's statistic of a series in which 0 deviations are gaps, as a number that
-// is standard normal for white noise (Wilson and Hilferty's transformation of chi
-// square).
+// Whether a series of residuals is white noise: a number that is standard normal if it
+// is. Ljung and Box's statistic, with r_lag the autocorrelation and n the count,
+//
+//     Q = n (n + 2) sum over lags of r_lag^2/(n - lag),
+//
+// is chi square with k = lags degrees of freedom, which Wilson and Hilferty's
+// transformation makes normal: ((Q/k)^(1/3) - 1 + 2/(9 k))/sqrt(2/(9 k)). Samples with a
+// deviation of 0 are gaps. *rms receives the root of the mean square.
 static double whiteness_of(const double *series, const double *deviation, size_t rows,
                            double *rms)
 {
-    double squares = 0, q = 0;
+    double squares = 0, statistic = 0;
     size_t count = 0;
     for (size_t i = 0; i < rows; i++) {
         squares += series[i] * series[i];
@@ -47,15 +53,17 @@ static double whiteness_of(const double *series, const double *deviation, size_t
         for (size_t i = lag; i < rows; i++) {
             product += series[i] * series[i - lag];
         }
-        q += product / squares * (product / squares) / (double)(count - lag);
+        const double correlation = product / squares;
+        statistic += correlation * correlation / (double)(count - lag);
     }
-    q *= (double)count * (double)(count + 2);
-    const double k = IDENTIFY_LAGS, spread = 2 / (9 * k);
-    return (plain_pow(q / k, 1.0 / 3) - (1 - spread)) / sqrt(spread);
+    statistic *= (double)count * (double)(count + 2);
+
+    const double k = IDENTIFY_LAGS, variance = 2 / (9 * k);
+    return (plain_pow(statistic / k, 1.0 / 3) - (1 - variance)) / sqrt(variance);
 }
 
-// Of every channel; that of an encoder, whose steps are no noise, counts where it is
-// alone.
+// Finds rms and whiteness of every channel of every trace, and whether all are white. The
+// steps of an encoder are no noise: beside a tachometer it has no say in that.
 static status judge_whiteness(identification *id, fault *f)
 {
     const double *residual = id->residual;
@@ -66,7 +74,7 @@ static status judge_whiteness(identification *id, fault *f)
         if (series == NULL) {
             return fault_no_memory(f);
         }
-        const bool alone = t->reading[CHANNEL_TACHOMETER] == NULL;
+        const bool has_tachometer = t->reading[CHANNEL_TACHOMETER] != NULL;
         for (int c = 0; c < CHANNELS; c++) {
             t->rms[c] = t->whiteness[c] = (double)NAN;
             if (t->reading[c] == NULL) {
@@ -80,8 +88,8 @@ static status judge_whiteness(identification *id, fault *f)
                 }
             }
             t->whiteness[c] = whiteness_of(series, t->deviation[c], t->rows, &t->rms[c]);
-            const bool counts = c != CHANNEL_ENCODER || alone;
-            id->white = id->white && !(counts && t->whiteness[c] > WHITE);
+            const bool has_say = c != CHANNEL_ENCODER || !has_tachometer;
+            id->white = id->white && !(has_say && t->whiteness[c] > WHITE);
         }
         residual += t->contact_count;
     }
@@ -108,94 +116,102 @@ static void add_scaled(double *to, double factor, const double *a, size_t count)
 
 // --- errors ----------------------------------------------------------------------------
 
-// What the parameters' columns of the Jacobian say that the traces' own cannot: what is
-// left of them when their projections on the latter, as far as these say anything, are
-// taken off. alone[p * residuals].
+// Takes out of the parameters' columns of the Jacobian what the traces' own unknowns
+// could explain as well: the projections on the space of the latter's columns. What is
+// left goes to alone[p * residuals]. The space has an orthogonal basis from the
+// eigenvectors of the columns' matrix of products; eigenvalues that are zero but for
+// rounding have none.
 static bool orthogonalise(const identification *id, const double *jacobian, double *alone)
 {
     const size_t m = id->residuals;
     const int p = id->count, q = id->unknowns - p;
-    double size[IDENTIFY_UNKNOWNS], own[IDENTIFY_UNKNOWNS * IDENTIFY_UNKNOWNS],
+    const double *own_columns = jacobian + (size_t)p * m;
+    double size[IDENTIFY_UNKNOWNS], vectors[IDENTIFY_UNKNOWNS * IDENTIFY_UNKNOWNS],
         values[IDENTIFY_UNKNOWNS], scratch[2 * IDENTIFY_UNKNOWNS];
     memcpy(alone, jacobian, (size_t)p * m * sizeof *alone);
+
+    // products of the traces' own columns, each of size 1, and their eigenvectors
     for (int i = 0; i < q; i++) {
-        const double square =
-            dot(jacobian + (size_t)(p + i) * m, jacobian + (size_t)(p + i) * m, m);
+        const double *column = own_columns + (size_t)i * m;
+        const double square = dot(column, column, m);
         if (square > 0) {
             size[i] = sqrt(square);
         } else {
             size[i] = 1;
         }
         for (int j = 0; j <= i; j++) {
-            own[i * q + j] = own[j * q + i] =
-                dot(jacobian + (size_t)(p + i) * m, jacobian + (size_t)(p + j) * m, m) /
-                (size[i] * size[j]);
+            vectors[i * q + j] = vectors[j * q + i] =
+                dot(column, own_columns + (size_t)j * m, m) / (size[i] * size[j]);
         }
     }
-    SCOPED(free_kept) double *along = calloc(m, sizeof *along);
-    if (along == NULL || (q > 0 && !symmetric_eigen(q, own, values, scratch))) {
+    SCOPED(free_kept) double *basis = calloc(m, sizeof *basis);
+    if (basis == NULL || (q > 0 && !symmetric_eigen(q, vectors, values, scratch))) {
         return false;
     }
+
+    // take the projection on each basis vector, whose square is the eigenvalue, off every
+    // parameter's column
     for (int k = 0; k < q; k++) {
         if (values[k] < NO_SAY * values[q - 1]) {
             continue;
         }
-        memset(along, 0, m * sizeof *along);
+        memset(basis, 0, m * sizeof *basis);
         for (int j = 0; j < q; j++) {
-            add_scaled(along, own[k * q + j] / size[j], jacobian + (size_t)(p + j) * m,
+            add_scaled(basis, vectors[k * q + j] / size[j], own_columns + (size_t)j * m,
                        m);
         }
         for (int i = 0; i < p; i++) {
-            add_scaled(alone + (size_t)i * m,
-                       -dot(alone + (size_t)i * m, along, m) / values[k], along, m);
+            double *column = alone + (size_t)i * m;
+            add_scaled(column, -dot(column, basis, m) / values[k], basis, m);
         }
     }
     return true;
 }
 
-// Of one channel of all traces, for each parameter: the products of the columns, and the
-// sum over blocks of the square of (sum in the block of a r).
+// Sums over one channel of all traces, a and b being columns of parameters and r
+// residuals: the products a b, and for each parameter the squares of every block's sum of
+// a r.
 typedef struct channel_sums {
     double products[IDENTIFY_PATHS * IDENTIFY_PATHS], squares[IDENTIFY_PATHS];
 } channel_sums;
 
-// Ends a block: its sums are squared and begin anew.
-static void end_block(channel_sums *of, double *sums, int count)
+// Ends a block: adds the squares of its sums and sets them back to 0.
+static void end_block(channel_sums *channel, double *block, int count)
 {
     for (int a = 0; a < count; a++) {
-        of->squares[a] += sums[a] * sums[a];
-        sums[a] = 0;
+        channel->squares[a] += block[a] * block[a];
+        block[a] = 0;
     }
 }
 
-// Adds a channel of a trace, whose first residual is number `at`.
+// Adds one channel of a trace to the sums; its first residual is number `at` of all.
 static void add_readings(const identification *id, const recorded_trace *t, int channel,
-                         const double *alone, size_t at, channel_sums *of)
+                         const double *alone, size_t at, channel_sums *sums)
 {
     const size_t m = id->residuals;
     const int p = id->count;
-    const double *read = t->reading[channel];
-    double sums[IDENTIFY_PATHS] = {0}, begun = -HUGE_VAL;
+    const double *reading = t->reading[channel];
+    double block[IDENTIFY_PATHS] = {0}, block_start = -HUGE_VAL;
     for (size_t i = 0; i < t->rows; i++) {
-        // a reading that stays is one reading: no block ends in it
-        const bool stays = i > 0 && read[i] == read[i - 1];
-        if (t->time[i] - begun >= BLOCK && !stays) {
-            begun = t->time[i];
-            end_block(of, sums, p);
+        // samples that repeat a reading are one reading: no block ends among them
+        const bool repeats = i > 0 && reading[i] == reading[i - 1];
+        if (t->time[i] - block_start >= BLOCK && !repeats) {
+            block_start = t->time[i];
+            end_block(sums, block, p);
         }
         if (!(t->deviation[channel][i] > 0)) {
             continue;
         }
         for (int a = 0; a < p; a++) {
-            sums[a] += alone[(size_t)a * m + at] * id->residual[at];
+            block[a] += alone[(size_t)a * m + at] * id->residual[at];
             for (int b = 0; b < p; b++) {
-                of->products[a * p + b] +=
+                sums->products[a * p + b] +=
                     alone[(size_t)a * m + at] * alone[(size_t)b * m + at];
             }
         }
         at++;
     }
-    end_block(of, sums, p);
+    end_block(sums, block, p);
 }
 
 // How many residuals a channel of a trace has.
@@ -210,52 +226,55 @@ static size_t residuals_of_channel(const recorded_trace *t, int channel)
     return count;
 }
 
-// How far the residuals of a channel of all traces scatter where the parameters look:
-// over blocks that are longer than what correlates them,
+// Adds a channel of all traces to the information, the products of the parameters'
+// columns, and to the scatter, which is that times how far the channel's residuals r
+// scatter where a parameter with the column a shows: over blocks longer than residuals
+// are correlated,
 //
-//     rho = sum over parameters and blocks of (sum in the block of a r)^2 / sum of a^2
+//     rho = mean over parameters of: sum over blocks of (sum in the block of a r)^2 over
+//           the sum of a^2
 //
-// with a the parameter's column, of size 1. It is 1 for white residuals of deviation 1,
-// below for the rounding of an encoder that moves, which has no slow part, above for what
-// the model lacks. Its weight goes to information[], that of the channel to scatter[].
+// It is 1 for white residuals of deviation 1, below that for the rounding of an encoder
+// that moves, which has no slow part, and above it where the model lacks something.
 static void add_channel(const identification *id, int channel, const double *alone,
                         double *information, double *scatter)
 {
     const int p = id->count;
-    channel_sums of = {0};
-    size_t at = 0;
+    channel_sums sums = {0};
+    size_t at = 0; // number of the first residual of a channel of a trace
     for (int k = 0; k < id->trace_count; k++) {
         const recorded_trace *t = &id->traces[k];
         for (int c = 0; c < CHANNELS; c++) {
             if (c == channel && t->reading[c] != NULL) {
-                add_readings(id, t, c, alone, at, &of);
+                add_readings(id, t, c, alone, at, &sums);
             }
             at += residuals_of_channel(t, c);
         }
         at += (size_t)t->contact_count;
     }
 
-    // the mean over the parameters that look at this channel
+    // the mean over the parameters that show in this channel
     double rho = 0;
-    int looking = 0;
+    int shown = 0;
     for (int a = 0; a < p; a++) {
-        if (of.products[a * p + a] > 0) {
-            rho += of.squares[a] / of.products[a * p + a];
-            looking++;
+        if (sums.products[a * p + a] > 0) {
+            rho += sums.squares[a] / sums.products[a * p + a];
+            shown++;
         }
     }
-    if (looking > 0) {
-        rho = rho / looking;
+    if (shown > 0) {
+        rho = rho / shown;
     } else {
         rho = 1;
     }
     for (int i = 0; i < p * p; i++) {
-        information[i] += of.products[i];
-        scatter[i] += rho * of.products[i];
+        information[i] += sums.products[i];
+        scatter[i] += rho * sums.products[i];
     }
 }
 
-// The instants of touches, each with the deviation that it has.
+// Adds the instants of touches, the last residuals of each trace, to information and
+// scatter. Each scatters by its own residual, or by 1 if that is less.
 static void add_contacts(const identification *id, const double *alone,
                          double *information, double *scatter)
 {
@@ -277,11 +296,11 @@ static void add_contacts(const identification *id, const double *alone,
     }
 }
 
-// The covariance of what is determined: with the information's eigenvectors v and values
-// l,
+// The covariance of the parameters by White's estimator, J^-1 S J^-1, J being the
+// information and S the scatter. With the eigenvectors v and eigenvalues l of J, of which
+// only those count that are determined, it is
 //
-//     sum over k and j of v_k (v_k' S v_j) / (l_k l_j) v_j',   S the scatter (White's
-//     estimator).
+//     sum over k and j of v_k (v_k' S v_j)/(l_k l_j) v_j'
 static void find_covariance(identification *id, const double *values,
                             const double *scatter)
 {
@@ -317,7 +336,7 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
         return STATUS_OK;
     }
 
-    // what each channel says of the parameters, and how far it scatters
+    // the information on the parameters of all channels and touches, and its scatter
     SCOPED(free_kept) double *alone = calloc((size_t)p * id->residuals, sizeof *alone);
     if (alone == NULL) {
         return fault_no_memory(f);
@@ -333,7 +352,7 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     FAULT_IF(!done || !symmetric_eigen(p, id->direction, values, scratch), f,
              STATUS_SINGULAR, "the parameters' errors cannot be computed");
 
-    // what the model does not explain makes errors larger, by as much
+    // the sizes of the information; what the model does not explain lowers them
     double most;
     const double misfit = fmax(1, identify_misfit(id, &most));
     id->undetermined = 0;
@@ -344,13 +363,15 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
         }
     }
     find_covariance(id, values, scatter);
+
+    // a parameter with a part in combinations that are not determined is not known
     for (int i = 0; i < p; i++) {
         fitted_parameter *fit = &id->fit[i];
-        double part = 0;
+        double undetermined_part = 0;
         for (int k = 0; k < id->undetermined; k++) {
-            part += id->direction[k * p + i] * id->direction[k * p + i];
+            undetermined_part += id->direction[k * p + i] * id->direction[k * p + i];
         }
-        fit->determined = part < IDENTIFY_PART;
+        fit->determined = undetermined_part < IDENTIFY_PART;
         if (fit->determined) {
             fit->standard_error = id->fit[i].scale * sqrt(id->covariance[i * p + i]);
         } else {
@@ -363,10 +384,12 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
 }
 
 // Chi square has as many degrees of freedom n as there are readings more than unknowns;
-// noise alone gives it the mean n and the standard deviation sqrt(2 n).
+// noise alone gives it the mean n and the standard deviation sqrt(2 n). The residuals
+// include one penalty for each parameter, which is no reading.
 double identify_misfit(const identification *id, double *most)
 {
-    const double freedoms = (double)(id->residuals - (size_t)(id->unknowns + id->count));
-    *most = NOISE_KNOWN * NOISE_KNOWN * (1 + CHANCE * sqrt(2 / freedoms));
-    return id->chi_square / freedoms;
+    const size_t readings = id->residuals - (size_t)id->count;
+    const double freedom = (double)(readings - (size_t)id->unknowns);
+    *most = NOISE_KNOWN * NOISE_KNOWN * (1 + CHANCE * sqrt(2 / freedom));
+    return id->chi_square / freedom;
 }

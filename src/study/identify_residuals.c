@@ -1,4 +1,5 @@
-// What of a recorded trace is compared with a run, and how.
+// Reads recorded traces, weighs their readings, and computes the residuals between them
+// and runs under the recorded command.
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -21,8 +22,8 @@ const int identify_signals[CHANNELS] = {
 
 // --- reading ---------------------------------------------------------------------------
 
-// A column under the heading that the user gives for a signal, else under the signal's
-// name; NULL in *values where it need not be there and is not.
+// Reads a signal's column. Its heading is what `columns` says ("signal=heading"), else
+// the signal's name. A column that is missing and not needed leaves NULL in *values.
 static status read_column(const csv_table *t, const char *signal, const char *unit,
                           bool needed, char *const *columns, int count, double **values,
                           fault *f)
@@ -53,18 +54,19 @@ static status read_column(const csv_table *t, const char *signal, const char *un
     return csv_table_numbers(t, heading, unit, false, values, f);
 }
 
-// Keeps what each sample read: of several rows within a sampling period, which show what
-// the rig holds, the last one's values and the first one's time.
+// Keeps one row for each sampling period: of several rows within a period, which repeat
+// what the rig holds, the first one's time and the last one's values. Time then counts
+// from the first row.
 static void keep_samples(recorded_trace *t, double rate)
 {
     size_t kept = 0;
-    double last = -1;
+    double last_period = -1;
     const double begin = t->begin = t->time[0];
     for (size_t i = 0; i < t->rows; i++) {
-        const double number = floor((t->time[i] - begin) * rate + SAME_INSTANT);
-        if (number > last) {
+        const double period = floor((t->time[i] - begin) * rate + SAME_INSTANT);
+        if (period > last_period) {
             t->time[kept++] = t->time[i] - begin;
-            last = number;
+            last_period = period;
         }
         t->command[kept - 1] = t->command[i];
         for (int c = 0; c < CHANNELS; c++) {
@@ -82,9 +84,9 @@ static int force_channel(const recorded_trace *t)
     return t->reading[CHANNEL_FSR] != NULL ? CHANNEL_FSR : CHANNEL_PIEZO;
 }
 
-// What a residual is made of: volts of the FSR, whose noise is even there, else the
-// reading.
-static double residual_of(const sensor_parameters *s, int channel, double reading)
+// The quantity whose differences are residuals: the FSR's volts, in which its noise does
+// not depend on the force, else the reading itself.
+static double compared_value(const sensor_parameters *s, int channel, double reading)
 {
     if (channel == CHANNEL_FSR) {
         return fsr_volts(s, reading);
@@ -92,32 +94,36 @@ static double residual_of(const sensor_parameters *s, int channel, double readin
     return reading;
 }
 
-// Standard deviation of noise and converter's step, in the residual's unit; *range: the
-// largest magnitude that can be read, in that unit; *dithered: noise covers the steps.
+// The standard deviation of a reading by noise and by the converter's steps,
+//
+//     sqrt(noise^2 + step^2/12),
+//
+// in the unit of compared_value. *range receives the largest magnitude that can be read,
+// in that unit, and *dithered whether the noise covers the steps.
 static double deviation_of(const sensor_parameters *s, int channel, double *range,
                            bool *dithered)
 {
+    // sensors of volts behind an A/D converter, and an encoder, which counts radians
+    const converter adc = converter_of(s->adc_bits, s->adc_range);
+    const double encoder_step = s->encoder_counts > 0 ? 2 * M_PI / s->encoder_counts : 0;
     const struct {
-        double noise, gain; // volts, volts per unit
+        double noise, step, range; // in the sensor's own unit, [V] or [rad]
+        double gain;               // of that unit per unit of the reading
     } channels[CHANNELS] = {
-        [CHANNEL_TACHOMETER] = {s->tachometer_noise, s->tachometer_gain},
-        [CHANNEL_FSR] = {s->fsr_noise, 1},
-        [CHANNEL_PIEZO] = {s->piezo_noise, s->piezo_gain},
-        [CHANNEL_FILM] = {s->film_noise, s->film_gain},
-        [CHANNEL_ACCELEROMETER] = {s->accelerometer_noise, s->accelerometer_gain},
+        [CHANNEL_ENCODER] = {0, encoder_step, HUGE_VAL, 1},
+        [CHANNEL_TACHOMETER] = {s->tachometer_noise, adc.step, s->adc_range,
+                                s->tachometer_gain},
+        [CHANNEL_FSR] = {s->fsr_noise, adc.step, s->adc_range, 1},
+        [CHANNEL_PIEZO] = {s->piezo_noise, adc.step, s->adc_range, s->piezo_gain},
+        [CHANNEL_FILM] = {s->film_noise, adc.step, s->adc_range, s->film_gain},
+        [CHANNEL_ACCELEROMETER] = {s->accelerometer_noise, adc.step, s->adc_range,
+                                   s->accelerometer_gain},
     };
-    double step = converter_of(s->adc_bits, s->adc_range).step;
-    double noise = channels[channel].noise, gain = channels[channel].gain;
-    *range = s->adc_range / gain;
-    if (channel == CHANNEL_ENCODER) {
-        if (s->encoder_counts > 0) {
-            step = 2 * M_PI / s->encoder_counts;
-        } else {
-            step = 0;
-        }
-        gain = 1;
-        *range = HUGE_VAL;
-    }
+    const double gain = channels[channel].gain;
+    double noise = channels[channel].noise, step = channels[channel].step;
+    *range = channels[channel].range / gain;
+
+    // an ideal sensor has neither noise nor steps; an FSR saturates
     if (s->ideal) {
         step = noise = 0;
         *range = HUGE_VAL;
@@ -136,50 +142,54 @@ static void find_touches(recorded_trace *t, double threshold, unsigned char *nea
     const double *force = t->reading[force_channel(t)];
     double released = -HUGE_VAL;
     for (size_t i = 1; force != NULL && i < t->rows; i++) {
-        const bool was = force[i - 1] > threshold, is = force[i] > threshold;
-        if (was == is) {
+        const bool touched = force[i - 1] > threshold, touches = force[i] > threshold;
+        if (touched == touches) {
             continue;
         }
-        const double at = (t->time[i - 1] + t->time[i]) / 2;
-        if (is && at - released > IDENTIFY_GUARD) {
-            t->contacts[t->contact_count++] = at;
-        }
-        released = at;
 
-        // before it and behind it
-        for (size_t k = i; k-- > 0 && at - t->time[k] <= IDENTIFY_GUARD;) {
+        // a touch soon after a release is no touch of its own
+        const double change = (t->time[i - 1] + t->time[i]) / 2;
+        if (touches && change - released > IDENTIFY_GUARD) {
+            t->contacts[t->contact_count++] = change;
+        }
+        released = change;
+
+        // the samples before the change, and those after it
+        for (size_t k = i; k-- > 0 && change - t->time[k] <= IDENTIFY_GUARD;) {
             near[k] = 1;
         }
-        for (size_t k = i; k < t->rows && t->time[k] - at <= IDENTIFY_GUARD; k++) {
+        for (size_t k = i; k < t->rows && t->time[k] - change <= IDENTIFY_GUARD; k++) {
             near[k] = 1;
         }
     }
 }
 
-// Sets the deviation of each reading of a channel, 0 of one that does not count, and adds
-// those that count to the residuals.
+// Sets the deviation of each reading of a channel and counts the readings that are
+// compared. A deviation of 0 marks those that are not: near a touch, of the FSR without
+// contact, or near the end of the range. Equal readings in a row are one reading, whose
+// deviation each of n samples has times sqrt(n), unless noise covers the steps.
 static status weigh_channel(recorded_trace *t, int c, const parameters *p,
                             const unsigned char *near, fault *f)
 {
     double range;
     bool dithered;
     const double deviation = deviation_of(&p->sensor, c, &range, &dithered);
-    const double *read = t->reading[c];
+    const double *reading = t->reading[c];
     t->deviation[c] = calloc(t->rows, sizeof *t->deviation[c]);
     if (t->deviation[c] == NULL) {
         return fault_no_memory(f);
     }
     for (size_t i = 0, end; i < t->rows; i = end) {
-        // samples that are one reading, unless noise covers the steps
+        // the samples from i to before `end` are one reading
         end = i + 1;
-        while (!dithered && end < t->rows && read[end] == read[i]) {
+        while (!dithered && end < t->rows && reading[end] == reading[i]) {
             end++;
         }
 
         for (size_t k = i; k < end; k++) {
-            const double size = fabs(residual_of(&p->sensor, c, read[k]));
+            const double size = fabs(compared_value(&p->sensor, c, reading[k]));
             const bool touches =
-                c != CHANNEL_FSR || read[k] > p->control.contact_threshold;
+                c != CHANNEL_FSR || reading[k] > p->control.contact_threshold;
             if (!near[k] && touches && size < range - NEAR_RANGE * deviation) {
                 t->deviation[c][k] = deviation * sqrt((double)(end - i));
                 t->residuals++;
@@ -189,9 +199,7 @@ static status weigh_channel(recorded_trace *t, int c, const parameters *p,
     return STATUS_OK;
 }
 
-// Finds touches and releases in the force that was recorded, and says what counts:
-// nothing near them, forces in contact, and what is within its range. A reading that
-// stays within a step of its converter for some samples is one reading.
+// Finds the touches in the recorded force and weighs the readings of all channels.
 static status weigh(recorded_trace *t, const parameters *p, fault *f)
 {
     SCOPED(free_kept) unsigned char *near = calloc(t->rows, 1);
@@ -209,7 +217,9 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// The state that the trace starts with, as far as its first readings tell.
+// Guesses the state that the trace starts with: the angle that the encoder reads first,
+// and the tachometer's first velocity if that differs from the scenario's by more than
+// noise.
 static void guess_start(recorded_trace *t, const parameters *p)
 {
     const double *encoder = t->reading[CHANNEL_ENCODER],
@@ -293,8 +303,9 @@ static const controller playback = {.interface = CONTROLLER_INTERFACE,
                                     .memory_size = sizeof(playback_memory),
                                     .sample = play_back};
 
-// The scenario as it is run: the sensors' lags, curves and ripple stay, noise and steps
-// are what residuals are measured by.
+// Makes the scenario of a run under the recorded command, from the start in own[]. Its
+// sensors keep their lags, curves and ripple; they have no noise and no steps, whose size
+// the residuals are measured by.
 static status playback_scenario(const identification *id, const recorded_trace *t,
                                 const parameters *p, const double own[OWNS],
                                 scenario *made, fault *f)
@@ -337,8 +348,9 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
     TRY(identify_parameters(id, true, &p, f));
     TRY(playback_scenario(id, t, &p, t->own, &fitted, f));
 
-    // its noise and steps come back; a sample takes the last row of its period, as
-    // keep_samples has it
+    // The sensors get their noise and steps back. The recording is played back from its
+    // file, shifted so that a sample takes the last row of its period, as keep_samples
+    // does.
     fitted.parameters.sensor = p.sensor;
     const double period = (1 - ROW_MARGIN) / p.control.rate;
     const parameter_change changes[] = {
@@ -353,7 +365,8 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
     return scenario_with(&fitted, changes, sizeof changes / sizeof *changes, made, f);
 }
 
-// Between two rows a quantity is the cubic through its values and rates.
+// A quantity between two rows of a run: the cubic through its values and rates at both
+// (Hermite's interpolation).
 static double interpolate_cubic(const sample *a, const sample *b, double time,
                                 double from, double to, double from_rate, double to_rate)
 {
@@ -364,8 +377,9 @@ static double interpolate_cubic(const sample *a, const sample *b, double time,
            h * u * v * (v * from_rate - u * to_rate);
 }
 
-// What the sensors read at an instant; the hub's angle and velocity from the motion
-// itself, what lags between two samples on a straight line.
+// What a channel of a run reads at an instant. Encoder and tachometer read the hub's
+// motion, interpolated by cubics; sensors that lag are interpolated linearly between two
+// samples.
 static double reading_at(const trace *run, sensors *eyes, int channel, double time,
                          double period)
 {
@@ -386,13 +400,13 @@ static double reading_at(const trace *run, sensors *eyes, int channel, double ti
         return r.tachometer;
     }
 
-    // a sample's reading stands in the row before the next sample acts, the earlier one
-    // of that instant
-    const double whole = floor(time / period + SAME_INSTANT),
-                 share = time / period - whole;
+    // The samples before and after the instant. A sample's reading stands in the first
+    // row at the instant of the next sample, before that one acts.
+    const double sample_before = floor(time / period + SAME_INSTANT);
+    const double share = time / period - sample_before;
     double value[2];
     for (int i = 0; i < 2; i++) {
-        size_t row = trace_row_at(run, (whole + i + 1 - SAME_INSTANT) * period);
+        size_t row = trace_row_at(run, (sample_before + i + 1 - SAME_INSTANT) * period);
         if (row < last) {
             row++;
         }
@@ -419,7 +433,7 @@ static double nearest_touch(const trace *run, double time)
             any = true;
         }
 
-        // an impact alone sends the arm off again
+        // after an impact the arm is off the wall at once, in contact until a release
         if (touches || e->kind == EVENT_RELEASE) {
             if (e->kind == EVENT_CONTACT) {
                 released = HUGE_VAL;
@@ -431,7 +445,8 @@ static double nearest_touch(const trace *run, double time)
     return best;
 }
 
-// What a run comes to beside its residuals.
+// Compares the run's largest force and its touches with the recorded ones: fills in the
+// trace's relative error of the peak and its largest error of an instant of touch [s].
 static void judge_run(recorded_trace *t, const trace *run, double period,
                       const double *own)
 {
@@ -458,6 +473,12 @@ static void judge_run(recorded_trace *t, const trace *run, double period,
     }
 }
 
+// Writes the residuals of a run, recorded less computed over the deviation: of every
+// reading that is compared, then of the instants of touches, which are known to a
+// sampling period.
+// Writes the residuals of a run, recorded less computed over the deviation: of every
+// reading that is compared, then of the instants of touches, which are known to a
+// sampling period.
 static void compare_run(const recorded_trace *t, const trace *run, const parameters *p,
                         const double own[OWNS], double *residual)
 {
@@ -469,11 +490,10 @@ static void compare_run(const recorded_trace *t, const trace *run, const paramet
             if (t->deviation[c][i] > 0) {
                 const double time = fmax(t->time[i] - own[OWN_SHIFT], 0);
                 const double offset = c == CHANNEL_ENCODER ? own[OWN_OFFSET] : 0;
-                *residual++ =
-                    (residual_of(&p->sensor, c, t->reading[c][i]) -
-                     residual_of(&p->sensor, c,
-                                 reading_at(run, &eyes, c, time, period) + offset)) /
-                    t->deviation[c][i];
+                const double computed = reading_at(run, &eyes, c, time, period) + offset;
+                *residual++ = (compared_value(&p->sensor, c, t->reading[c][i]) -
+                               compared_value(&p->sensor, c, computed)) /
+                              t->deviation[c][i];
             }
         }
     }
@@ -500,7 +520,7 @@ status identify_residuals(const identification *id, recorded_trace *t,
         }
     }
 
-    // one that cannot be made is as far off as can be
+    // a run that fails, or a reading that it does not have, gets a large residual
     if (code == STATUS_OK) {
         compare_run(t, &result.trace, &made.parameters, own, residual);
     }

@@ -1,4 +1,4 @@
-// What a fit came to: in words, as JSON, and as a set of arms.
+// Writes the results of a fit: in words, as JSON, and as a set of arms drawn from it.
 #include <math.h>
 #include <string.h>
 
@@ -80,17 +80,20 @@ json_t *identify_json(const identification *id)
     json_t *fit = json_array(), *rows = json_array(), *words = json_array();
     const int p = id->count;
     for (int i = 0; i < p; i++) {
-        const fitted_parameter *of = &id->fit[i];
-        double row[IDENTIFY_PATHS];
+        const fitted_parameter *parameter = &id->fit[i];
         json_add(fit, json_of("path:t value:n standard_error:n low:n high:n determined:b "
                               "at_end_of_range:b",
-                              of->axis.name, of->value, of->standard_error, of->low,
-                              of->high, of->determined, identify_at_end(of)));
+                              parameter->axis.name, parameter->value,
+                              parameter->standard_error, parameter->low, parameter->high,
+                              parameter->determined, identify_at_end(parameter)));
+
+        // its correlations with all parameters: covariance over both deviations
+        double row[IDENTIFY_PATHS];
         for (int j = 0; j < p; j++) {
-            const double size =
+            const double deviations =
                 sqrt(id->covariance[i * p + i]) * sqrt(id->covariance[j * p + j]);
-            if (of->determined && id->fit[j].determined) {
-                row[j] = id->covariance[i * p + j] / size;
+            if (parameter->determined && id->fit[j].determined) {
+                row[j] = id->covariance[i * p + j] / deviations;
             } else {
                 row[j] = (double)NAN;
             }
@@ -108,8 +111,9 @@ json_t *identify_json(const identification *id)
                    identify_traces_json(id));
 }
 
-// An arm of the covariance, whose eigenvectors and -values these are: along each a normal
-// number.
+// Draws the parameters of one arm from the fit's covariance, given by its eigenvectors
+// and eigenvalues: along each eigenvector a normal number, the sum of 12 uniform ones
+// less 6.
 static void draw_parameters(const identification *id, const double *directions,
                             const double *values, random_generator *random, double *drawn)
 {
@@ -118,13 +122,13 @@ static void draw_parameters(const identification *id, const double *directions,
         drawn[i] = id->fit[i].value;
     }
     for (int k = 0; k < p; k++) {
-        double sum = -6;
+        double normal = -6;
         for (int i = 0; i < 12; i++) {
-            sum += random_uniform(random);
+            normal += random_uniform(random);
         }
+        const double deviation = sqrt(fmax(values[k], 0));
         for (int i = 0; i < p; i++) {
-            drawn[i] +=
-                sum * sqrt(fmax(values[k], 0)) * directions[k * p + i] * id->fit[i].scale;
+            drawn[i] += normal * deviation * directions[k * p + i] * id->fit[i].scale;
         }
     }
     for (int i = 0; i < p; i++) {
@@ -132,8 +136,9 @@ static void draw_parameters(const identification *id, const double *directions,
     }
 }
 
-// One line of a set, a number for each arm: of parameter i, or what a law believes of it,
-// as a factor of the true value that keeps the fitted one.
+// Writes one line of a set, "path=number,number,...", with a number for each arm: the
+// value of parameter i, or with `belief` the factor of that value that a law believes. It
+// is scaled so that the law believes the fitted value of each arm.
 static void write_line(FILE *stream, const char *path, const fitted_parameter *fit,
                        double (*drawn)[IDENTIFY_PATHS], int i, const double *belief)
 {

@@ -1,4 +1,5 @@
-// What a run says of its loop: answers to sines in the command, and to pushes.
+// Measures a loop in runs of its scenario: the loop gain from small sines that are added
+// to the command, and the least impulse at the tip that loses contact.
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,61 +11,82 @@
 #include "src/run/run_loop.h"
 #include "src/study/linear/linear.h"
 
-// Frequencies of the first pass, and passes that halve the intervals with a crossing.
-enum { FIRST = 28, PASSES = 4, MOST_POINTS = 160, MOST_WINDOWS = 40, PUSHES = 28 };
+enum {
+    FIRST_FREQUENCIES = 28, // of the first pass
+    REFINING_PASSES = 4,    // each halves the intervals with a crossing
+    MOST_POINTS = 160,
+    MOST_WINDOWS = 40, // that a sine is measured in
+    PUSH_HALVINGS = 28
+};
 
-#define LOWEST      0.5  // [Hz]
-#define WINDOW      0.5  // in which a sine is measured, at least [s]
-#define CYCLES      3    // at least
-#define AGREE       1e-4 // of one window with the two before
-#define SHARE       0.02 // of the holding command that a sine begins with
-#define MOST_SINE   0.2  // of the largest command
-#define NOTHING     1e-9 // of the command: the law does not answer
-#define FOLLOWED    0.5  // after a push [s]
-#define MOST_PUSHED 10.0 // [N s]
+#define LOWEST_FREQUENCY 0.5  // [Hz]
+#define LEAST_WINDOW     0.5  // in which a sine is measured [s]
+#define LEAST_CYCLES     3    // of the sine in a window
+#define AGREEMENT        1e-4 // relative difference of two windows that agree
+#define FIRST_SHARE      0.02 // first amplitude over the command that holds the contact
+#define MOST_SINE        0.2  // largest amplitude over the largest command
+#define NO_ANSWER        1e-9 // loop gain below which the law does not answer
+#define FOLLOWED         0.5  // time for which a push is followed [s]
+#define MOST_PUSHED      10.0 // largest impulse that is tried [N s]
 
-// The law with sines behind it: the one that is measured, and another that keeps the law
-// awake. `inner` holds the law itself, its memory and, of a process, the program.
-typedef struct injector {
+// The two sines that are added to the command: the one whose answer is measured, and one
+// at another frequency that keeps a law moving which sleeps while little changes.
+enum { MEASURED, WAKING, SINES };
+
+// A law that calls another one, the measured law, and adds sines to its command. `inner`
+// holds the measured law, its memory and, of a process, the program.
+typedef struct sine_probe {
     rig *inner;
-    double amplitude[2], turn[2]; // [V], [rad] from sample to sample
-    double first, wanted;      // amplitude that one begins with [V], swing of force [N]
-    double awake, awake_hertz; // the smallest that a law answered [V]
-    long sample;               // since the window began
-    double complex law, command,
-        force;      // sums over the window, with the sine that is measured
-    double mean[3]; // sums of command, force and its square
-} injector;
+    double amplitude[SINES];  // [V]
+    double phase_step[SINES]; // from sample to sample [rad]
+    double first_amplitude;   // with which each measurement begins [V]
+    double wanted_swing;      // amplitude of the force to aim at [N]
+    double waking_amplitude;  // the smallest to which the law answered [V]
+    double waking_hertz;      // the frequency at which it did
 
+    // of the window so far: samples, Fourier sums at the measured frequency, plain sums
+    long sample;
+    double complex law_fourier, command_fourier, force_fourier;
+    double command_sum, force_sum, force_square_sum;
+} sine_probe;
+
+// Asks the measured law for its command, adds both sines to it, and adds what the law
+// answered, the command and the force to the window's sums.
 static void sample_with_sine(void *memory, const controller_input *in,
                              controller_output *out)
 {
-    injector *i;
-    double s, c;
-    memcpy(&i, memory, sizeof i);
-    i->inner->law->sample(i->inner->memory, in, out);
+    sine_probe *probe;
+    double sine, cosine;
+    memcpy(&probe, memory, sizeof probe);
+    probe->inner->law->sample(probe->inner->memory, in, out);
     const double answer = out->command;
-    for (int k = 1; k >= 0; k--) { // the one that is measured last; begun at 45 degrees
-        inline_sincos(i->turn[k] * (double)i->sample, &s, &c);
-        out->command += i->amplitude[k] * sqrt(0.5) * (s + c);
-    }
-    i->sample++;
-    i->law += answer * complex_of(c, -s);
-    i->command += out->command * complex_of(c, -s);
-    i->force += in->force * complex_of(c, -s);
-    i->mean[0] += out->command;
-    i->mean[1] += in->force;
-    i->mean[2] += in->force * in->force;
+
+    // each sine begins at 45 degrees: sin(x + 45 degrees) = sqrt(1/2) (sin x + cos x)
+    inline_sincos(probe->phase_step[WAKING] * (double)probe->sample, &sine, &cosine);
+    out->command += probe->amplitude[WAKING] * sqrt(0.5) * (sine + cosine);
+    inline_sincos(probe->phase_step[MEASURED] * (double)probe->sample, &sine, &cosine);
+    out->command += probe->amplitude[MEASURED] * sqrt(0.5) * (sine + cosine);
+    probe->sample++;
+
+    // Fourier sums at the measured frequency, with exp(-i x) = cos x - i sin x
+    const double complex turned_back = complex_of(cosine, -sine);
+    probe->law_fourier += answer * turned_back;
+    probe->command_fourier += out->command * turned_back;
+    probe->force_fourier += in->force * turned_back;
+
+    probe->command_sum += out->command;
+    probe->force_sum += in->force;
+    probe->force_square_sum += in->force * in->force;
 }
 
 static const char *tune_inner_law(void *memory, const controller_setup *setup)
 {
-    injector *i;
-    memcpy(&i, memory, sizeof i);
-    return i->inner->law->tune(i->inner->memory, setup);
+    sine_probe *probe;
+    memcpy(&probe, memory, sizeof probe);
+    return probe->inner->law->tune(probe->inner->memory, setup);
 }
 
-// A run that has come to the scenario's end and goes on from there.
+// Runs the scenario to its end in a loop that can go on from there.
 static status run_to_end(run_loop **loop, const scenario *s, const loop_options *options,
                          fault *f)
 {
@@ -76,18 +98,21 @@ static status run_to_end(run_loop **loop, const scenario *s, const loop_options 
 
 // --- sines -----------------------------------------------------------------------------
 
-// A window of samples, in which the arm has to press and not to let go.
-static status pass_window(run_loop *l, injector *i, double samples, fault *f)
+// Lets the loop run for a window of samples. It is a fault if the arm does not press at
+// the window's end or has lost the wall within it.
+static status pass_window(run_loop *l, sine_probe *probe, double samples, fault *f)
 {
-    const double separations = loop_summary(l).separations;
+    const double separations_before = loop_summary(l).separations;
     status code = STATUS_OK;
-    i->sample = 0;
-    i->law = i->command = i->force = i->mean[0] = i->mean[1] = i->mean[2] = 0;
-    while (i->sample < (long)samples && code == STATUS_OK) {
+    probe->sample = 0;
+    probe->law_fourier = probe->command_fourier = probe->force_fourier = 0;
+    probe->command_sum = probe->force_sum = probe->force_square_sum = 0;
+
+    while (probe->sample < (long)samples && code == STATUS_OK) {
         code = loop_step(l, f);
     }
     if (code == STATUS_OK &&
-        !(loop_row(l).force > 0 && loop_summary(l).separations <= separations)) {
+        !(loop_row(l).force > 0 && loop_summary(l).separations <= separations_before)) {
         code = fault_set(f, STATUS_UNSTABLE,
                          "at t = %.4g s the arm does not press on the wall: what happens "
                          "about rest cannot be measured",
@@ -96,120 +121,146 @@ static status pass_window(run_loop *l, injector *i, double samples, fault *f)
     return code;
 }
 
-// How large a sine may be: its force swings as far above the noise of the reading as it
-// stays below the force that holds the contact, in equal ratios, from a tenth of that
-// force (laws may sleep where less moves) to half of it. It begins larger than the steps
-// of the D/A converter.
-static status size_sine(run_loop *l, injector *i, fault *f)
+// Chooses the swing of force to aim at and the first amplitude, from a window without a
+// sine. The swing is the geometric mean of the reading's noise and the force that holds
+// the contact, from a tenth of that force (laws may sleep where less moves) to half of
+// it. The first amplitude exceeds the steps of the D/A converter.
+static status size_sine(run_loop *l, sine_probe *probe, fault *f)
 {
-    const double samples = ceil(WINDOW / i->inner->period);
-    const status code = pass_window(l, i, samples, f);
-    const double force = i->mean[1] / samples,
-                 noise = sqrt(fmax(0, i->mean[2] / samples - force * force));
-    i->wanted = fmin(fmax(sqrt(noise * force), 0.1 * force), 0.5 * force);
-    i->first = fmax(SHARE * fabs(i->mean[0] / samples), 5 * i->inner->dac.step);
+    const double samples = ceil(LEAST_WINDOW / probe->inner->period);
+    const status code = pass_window(l, probe, samples, f);
+
+    const double force = probe->force_sum / samples;
+    const double variance = probe->force_square_sum / samples - force * force;
+    const double noise = sqrt(fmax(0, variance));
+    probe->wanted_swing = fmin(fmax(sqrt(noise * force), 0.1 * force), 0.5 * force);
+
+    const double holding_command = fabs(probe->command_sum / samples);
+    probe->first_amplitude =
+        fmax(FIRST_SHARE * holding_command, 5 * probe->inner->dac.step);
     return code;
 }
 
-// The loop gain at about *hertz, which becomes the frequency with whole cycles in whole
-// samples.
-static status measure_gain(run_loop *l, injector *i, double *hertz, double complex *gain,
-                           fault *f)
+// Measures the loop gain, -(law's answer)/(command), at about *hertz, which becomes the
+// nearest frequency that has whole cycles in whole samples.
+static status measure_gain(run_loop *l, sine_probe *probe, double *hertz,
+                           double complex *gain, fault *f)
 {
-    const double period = i->inner->period, most = MOST_SINE * i->inner->voltage_limit;
-    const double cycles = fmax(CYCLES, ceil(WINDOW * *hertz));
+    // the frequency of the measured sine, and nearly that of the last sine that kept the
+    // law awake
+    const double period = probe->inner->period;
+    const double largest_amplitude = MOST_SINE * probe->inner->voltage_limit;
+    const double cycles = fmax(LEAST_CYCLES, ceil(LEAST_WINDOW * *hertz));
     const double samples = round(cycles / (*hertz * period));
-    double complex law = 0, command = 0, before;
-    status code = STATUS_OK;
     *hertz = cycles / (samples * period);
-    i->turn[0] = 2 * M_PI * cycles / samples;
-    i->turn[1] = 2 * M_PI * fmax(1, round(i->awake_hertz * samples * period)) / samples;
-    i->amplitude[0] = i->first;
-    i->amplitude[1] = 0;
+    const double waking_cycles = fmax(1, round(probe->waking_hertz * samples * period));
+    probe->phase_step[MEASURED] = 2 * M_PI * cycles / samples;
+    probe->phase_step[WAKING] = 2 * M_PI * waking_cycles / samples;
+    probe->amplitude[MEASURED] = probe->first_amplitude;
+    probe->amplitude[WAKING] = 0;
+
+    // window after window until three agree: the transient is gone
+    double complex late_law = 0, late_command = 0, gain_before;
+    status code = STATUS_OK;
+    int agreements = 0;
     *gain = complex_of((double)NAN, 0);
-
-    // window after window until the transient is gone; of a noisy one the mean of the
-    // later half
-    int agreed = 0;
-    for (int w = 0; w < MOST_WINDOWS && agreed < 2 && code == STATUS_OK; w++) {
-        code = pass_window(l, i, samples, f);
+    for (int w = 0; w < MOST_WINDOWS && agreements < 2 && code == STATUS_OK; w++) {
+        code = pass_window(l, probe, samples, f);
         if (w >= MOST_WINDOWS / 2) {
-            law += i->law;
-            command += i->command;
+            late_law += probe->law_fourier;
+            late_command += probe->command_fourier;
         }
-        before = *gain;
-        *gain = -i->law / i->command;
+        gain_before = *gain;
+        *gain = -probe->law_fourier / probe->command_fourier;
 
-        // the sine grows until the force swings enough, or shrinks at once
-        const double swing = 2 * cabs(i->force) / samples;
-        const double factor = fmax(0.1, fmin(3, i->wanted / fmax(swing, 1e-12)));
-        const double amplitude = fmin(most, i->amplitude[0] * factor);
-        const bool steady = fabs(amplitude - i->amplitude[0]) < 0.2 * i->amplitude[0];
-        const bool answers = cabs(*gain) > NOTHING;
-        if (steady && cabs(*gain - before) <= AGREE * cabs(*gain)) {
-            agreed++;
+        // the amplitude that would give the wanted swing: at most 3 times this one, at
+        // least a tenth of it
+        const double swing = 2 * cabs(probe->force_fourier) / samples;
+        const double factor =
+            fmax(0.1, fmin(3, probe->wanted_swing / fmax(swing, 1e-12)));
+        const double present = probe->amplitude[MEASURED];
+        const double better = fmin(largest_amplitude, present * factor);
+        const bool steady = fabs(better - present) < 0.2 * present;
+        if (steady && cabs(*gain - gain_before) <= AGREEMENT * cabs(*gain)) {
+            agreements++;
         } else {
-            agreed = 0;
+            agreements = 0;
         }
         if (!steady) {
-            i->amplitude[0] = amplitude;
+            probe->amplitude[MEASURED] = better;
         }
-        if (steady && !answers && i->amplitude[1] == 0 && isfinite(i->awake)) {
-            i->amplitude[1] = i->awake;
-            agreed = 0;
-        } else if (steady && answers && i->amplitude[1] == 0 &&
-                   i->amplitude[0] < i->awake) {
-            i->awake = i->amplitude[0];
-            i->awake_hertz = *hertz;
+
+        // a law that does not answer is kept awake by the smallest sine that it did
+        // answer; one that answers may show a smaller such sine
+        const bool answers = cabs(*gain) > NO_ANSWER;
+        const bool alone = probe->amplitude[WAKING] == 0;
+        if (steady && !answers && alone && isfinite(probe->waking_amplitude)) {
+            probe->amplitude[WAKING] = probe->waking_amplitude;
+            agreements = 0;
+        } else if (steady && answers && alone &&
+                   probe->amplitude[MEASURED] < probe->waking_amplitude) {
+            probe->waking_amplitude = probe->amplitude[MEASURED];
+            probe->waking_hertz = *hertz;
         }
     }
-    if (agreed < 2 && command != 0) {
-        *gain = -law / command;
+
+    // noise kept the windows apart: the mean over the later half of them
+    if (agreements < 2 && late_command != 0) {
+        *gain = -late_law / late_command;
     }
     return code;
 }
 
-// Measures at about a frequency, and puts the point in its place.
-static status insert_frequency(run_loop *l, injector *i, double hertz, linear_response *r,
-                               fault *f)
+// Measures the gain at about a frequency and inserts the point where the frequencies keep
+// rising.
+static status insert_frequency(run_loop *l, sine_probe *probe, double hertz,
+                               linear_response *r, fault *f)
 {
     double complex gain;
-    const status code = measure_gain(l, i, &hertz, &gain, f);
-    int at = r->count++;
-    for (; at > 0 && r->frequency[at - 1] > 2 * M_PI * hertz; at--) {
-        r->frequency[at] = r->frequency[at - 1];
-        r->gain[at] = r->gain[at - 1];
+    const status code = measure_gain(l, probe, &hertz, &gain, f);
+    int place = r->count++;
+    for (; place > 0 && r->frequency[place - 1] > 2 * M_PI * hertz; place--) {
+        r->frequency[place] = r->frequency[place - 1];
+        r->gain[place] = r->gain[place - 1];
     }
-    r->frequency[at] = 2 * M_PI * hertz;
-    r->gain[at] = gain;
+    r->frequency[place] = 2 * M_PI * hertz;
+    r->gain[place] = gain;
     return code;
 }
 
-static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f)
+// Whether |L| = 1 or a negative real L, which margins are read from, lies between two
+// neighbouring loop gains.
+static bool crosses_between(double complex gain, double complex next)
 {
-    const double highest = 1 / (2 * i->inner->period),
-                 lowest = fmin(LOWEST, highest / 10);
-    TRY(size_sine(l, i, f));
-    for (int k = 0; k < FIRST; k++) {
-        TRY(insert_frequency(l, i,
-                             lowest * plain_pow(highest / lowest, k / (FIRST - 1.0)), r,
-                             f));
+    const bool crosses_negative_axis =
+        cimag(gain) * cimag(next) < 0 && creal(gain + next) < 0;
+    return crosses_negative_axis || (cabs(gain) - 1) * (cabs(next) - 1) < 0;
+}
+
+// Measures at frequencies in equal ratios up to half the sampling rate, then several
+// times in the middle of every interval with a crossing.
+static status measure_all(run_loop *l, sine_probe *probe, linear_response *r, fault *f)
+{
+    const double highest = 1 / (2 * probe->inner->period);
+    const double lowest = fmin(LOWEST_FREQUENCY, highest / 10);
+    TRY(size_sine(l, probe, f));
+    for (int k = 0; k < FIRST_FREQUENCIES; k++) {
+        const double share = k / (FIRST_FREQUENCIES - 1.0);
+        const double hertz = lowest * plain_pow(highest / lowest, share);
+        TRY(insert_frequency(l, probe, hertz, r, f));
     }
 
-    // where size one or a negative real gain lies between two, between
-    for (int pass = 0; pass < PASSES; pass++) {
-        double middles[MOST_POINTS];
-        int wanted = 0;
-        for (int k = 0; k + 1 < r->count && r->count + wanted < MOST_POINTS; k++) {
-            const double complex a = r->gain[k], b = r->gain[k + 1];
-            const bool turns = cimag(a) * cimag(b) < 0 && creal(a + b) < 0;
-            if (turns || (cabs(a) - 1) * (cabs(b) - 1) < 0) {
-                middles[wanted++] =
+    for (int pass = 0; pass < REFINING_PASSES; pass++) {
+        double middles[MOST_POINTS]; // geometric means of two neighbours [Hz]
+        int count = 0;
+        for (int k = 0; k + 1 < r->count && r->count + count < MOST_POINTS; k++) {
+            if (crosses_between(r->gain[k], r->gain[k + 1])) {
+                middles[count++] =
                     sqrt(r->frequency[k] * r->frequency[k + 1]) / (2 * M_PI);
             }
         }
-        for (int k = 0; k < wanted; k++) {
-            TRY(insert_frequency(l, i, middles[k], r, f));
+        for (int k = 0; k < count; k++) {
+            TRY(insert_frequency(l, probe, middles[k], r, f));
         }
     }
     return STATUS_OK;
@@ -219,37 +270,42 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
 {
     assert(s->parameters.control.law != LAW_NONE);
     *r = (linear_response){0};
-    injector i = {.awake = (double)INFINITY};
+    sine_probe probe = {.waking_amplitude = (double)INFINITY};
     run_loop *l = NULL;
+
+    // frequencies and complex gains in one block, and a rig with the measured law
     double *block = calloc(3 * MOST_POINTS, sizeof *block);
     status code;
     if (block != NULL) {
-        code = rig_create(&i.inner, &s->parameters, NULL, f);
+        code = rig_create(&probe.inner, &s->parameters, NULL, f);
     } else {
         code = fault_no_memory(f);
     }
-    if (code == STATUS_OK && i.inner->withheld) {
+    if (code == STATUS_OK && probe.inner->withheld) {
         code = fault_set(f, STATUS_NOT_ALLOWED,
                          "the loop of a program or plug-in needs --allow-code");
     }
+
     if (code == STATUS_OK) {
-        // the law as it is called and tuned, but for what goes out
-        controller law = *i.inner->law;
-        law.memory_size = sizeof(injector *);
-        law.start = controller_takes_anything; // the inner one was started with its rig
+        // the run's law is the measured one with another `sample`, whose memory is the
+        // probe's address
+        controller law = *probe.inner->law;
+        law.memory_size = sizeof(sine_probe *);
+        law.start = controller_takes_anything; // the inner law was started with its rig
         law.sample = sample_with_sine;
         if (law.tune != NULL) {
             law.tune = tune_inner_law;
         }
-        const loop_options options = {.law = {&law, &i}};
+        const loop_options options = {.law = {&law, &probe}};
         *r = (linear_response){0, block, (double complex *)(block + MOST_POINTS)};
         code = run_to_end(&l, s, &options, f);
         if (code == STATUS_OK) {
-            code = measure_all(l, &i, r, f);
+            code = measure_all(l, &probe, r, f);
         }
         loop_destroy(l);
     }
-    rig_destroy(i.inner);
+
+    rig_destroy(probe.inner);
     if (code != STATUS_OK) {
         free(block);
         *r = (linear_response){0};
@@ -259,11 +315,13 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
 
 // --- pushes ----------------------------------------------------------------------------
 
-// Whether an impulse at the tip of the kept state loses contact.
-static status loses(run_loop *l, const void *kept, double impulse, bool *lost, fault *f)
+// Whether the arm loses contact after an impulse [N s] at its tip, from the saved state
+// on.
+static status push_loses_contact(run_loop *l, const void *saved, double impulse,
+                                 bool *lost, fault *f)
 {
     *lost = false;
-    TRY(loop_restore(l, kept, loop_saved_size(l), f));
+    TRY(loop_restore(l, saved, loop_saved_size(l), f));
     const double before = loop_summary(l).separations;
     TRY(loop_push(l, impulse, f));
     TRY(loop_until(l, loop_time(l) + FOLLOWED, f));
@@ -271,18 +329,20 @@ static status loses(run_loop *l, const void *kept, double impulse, bool *lost, f
     return STATUS_OK;
 }
 
-// The least in one direction, by halves in the logarithm; NaN: none.
-static status least_push(run_loop *l, const void *kept, double direction, double *least,
+// The least impulse in one direction (1 or -1) that loses contact, by bisection of its
+// logarithm; NaN if not even the largest one does.
+static status least_push(run_loop *l, const void *saved, double direction, double *least,
                          fault *f)
 {
     double low = plain_log(1e-9), high = plain_log(MOST_PUSHED);
-    bool lost, there;
+    bool largest_loses, middle_loses;
     *least = (double)NAN;
-    TRY(loses(l, kept, direction * MOST_PUSHED, &lost, f));
-    for (int i = 0; i < PUSHES && lost; i++) {
+    TRY(push_loses_contact(l, saved, direction * MOST_PUSHED, &largest_loses, f));
+    for (int i = 0; i < PUSH_HALVINGS && largest_loses; i++) {
         const double middle = (low + high) / 2;
-        TRY(loses(l, kept, direction * plain_exp(middle), &there, f));
-        if (there) {
+        const double impulse = direction * plain_exp(middle);
+        TRY(push_loses_contact(l, saved, impulse, &middle_loses, f));
+        if (middle_loses) {
             high = middle;
         } else {
             low = middle;
@@ -301,21 +361,21 @@ status linear_contact_margin(const scenario *s, double *impulse, fault *f)
     }
     status code = run_to_end(&l, s, &(loop_options){.keep_trace = false}, f);
     if (code == STATUS_OK && loop_row(l).force > 0) {
-        void *kept = malloc(loop_saved_size(l));
+        void *saved = malloc(loop_saved_size(l));
         double away = (double)NAN, against = (double)NAN;
-        if (kept == NULL) {
+        if (saved == NULL) {
             code = fault_no_memory(f);
         } else {
-            loop_save(l, kept);
-            code = least_push(l, kept, -1, &away, f);
+            loop_save(l, saved);
+            code = least_push(l, saved, -1, &away, f);
         }
         if (code == STATUS_OK) {
-            code = least_push(l, kept, 1, &against, f);
+            code = least_push(l, saved, 1, &against, f);
         }
         if (code == STATUS_OK) {
             *impulse = fmin(away, against); // the other one if one is NaN
         }
-        free(kept);
+        free(saved);
     }
     loop_destroy(l);
     return code;

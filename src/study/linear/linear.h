@@ -165,10 +165,10 @@ status linear_inject(const scenario *s, linear_response *r, fault *f);
 // not press, or its controller is a process, which cannot be taken back to before a push.
 status linear_contact_margin(const scenario *s, double *impulse, fault *f);
 
-// Where a loop is stable: by_runs, a run of the scenario settles, with friction and all
-// else, and
-// *number is its settling time [s] or NaN; else its linear form decays: *number is how
-// fast its slowest part grows [1/s], below zero of a stable one.
+// Whether a loop is stable. With by_runs it is if a run of the scenario, with friction
+// and all else, settles: *number is its settling time [s], or NaN. Else it is if its
+// linear form decays: *number is how fast the slowest part grows [1/s], below zero of a
+// stable loop.
 status linear_stability(const scenario *s, linear_place place, bool by_runs,
                         double *number, fault *f);
 static inline bool linear_is_stable(bool by_runs, double number)

@@ -11,11 +11,11 @@
 #include "src/base/sincos.h"
 #include "src/study/linear/linear.h"
 
-// What is below this share of the terms it is the sum of is rounding.
+// A sum is rounding if its size is below this share of the sum of its terms' sizes.
 #define ROUNDING 1e-11
 
-// Eigenvalues of a general matrix, and linear equations. The last two of dgeev are the
-// lengths of its texts, as Fortran passes them.
+// LAPACK's eigenvalues of a general matrix, and its solution of linear equations. The
+// last two arguments of dgeev are the lengths of its texts, as Fortran passes them.
 typedef void (*dgeev)(const char *left, const char *right, const int *n, double *a,
                       const int *lda, double *real, double *imaginary, double *vl,
                       const int *ldvl, double *vr, const int *ldvr, double *work,
@@ -26,44 +26,48 @@ typedef void (*zgesv)(const int *n, const int *columns, double complex *a, const
 static dgeev eigenvalues_of;
 static zgesv solve_complex;
 
-// Loads both, once; false without LAPACK.
+// Loads both functions at the first call; false without LAPACK.
 static bool load_lapack(void)
 {
     if (solve_complex == NULL) {
         void *library = dlopen("liblapack.so.3", RTLD_NOW | RTLD_LOCAL);
-        void *one = NULL, *other = NULL;
+        void *dgeev_symbol = NULL, *zgesv_symbol = NULL;
         if (library != NULL) {
-            one = dlsym(library, "dgeev_");
+            dgeev_symbol = dlsym(library, "dgeev_");
         }
-        if (one != NULL) {
-            other = dlsym(library, "zgesv_");
+        if (dgeev_symbol != NULL) {
+            zgesv_symbol = dlsym(library, "zgesv_");
         }
-        memcpy(&eigenvalues_of, &one, sizeof one);
-        memcpy(&solve_complex, &other, sizeof other);
+
+        // C has no conversion from an object pointer to a function pointer: copy the
+        // bytes
+        memcpy(&eigenvalues_of, &dgeev_symbol, sizeof dgeev_symbol);
+        memcpy(&solve_complex, &zgesv_symbol, sizeof zgesv_symbol);
     }
     return solve_complex != NULL;
 }
 
-// Slow before fast, the upper one of a pair first.
+// Orders poles by size, then by real part; of a conjugate pair the upper one comes first.
+// Differences below 1e-9 of the size are rounding and count as none.
 static int compare_poles(const void *one, const void *other)
 {
     double complex a, b;
     memcpy(&a, one, sizeof a);
     memcpy(&b, other, sizeof b);
-    const double alike = 1e-9 * cabs(a), sizes = cabs(a) - cabs(b),
-                 parts = creal(a) - creal(b);
-    double by;
-    if (fabs(sizes) > alike) {
-        by = sizes;
-    } else if (fabs(parts) > alike) {
-        by = parts;
-    } else {
-        by = cimag(b) - cimag(a);
+    const double rounding = 1e-9 * cabs(a);
+    const double size_difference = cabs(a) - cabs(b);
+    const double real_difference = creal(a) - creal(b);
+
+    double order = cimag(b) - cimag(a);
+    if (fabs(size_difference) > rounding) {
+        order = size_difference;
+    } else if (fabs(real_difference) > rounding) {
+        order = real_difference;
     }
-    return (by > 0) - (by < 0);
+    return (order > 0) - (order < 0);
 }
 
-// Of matrix[n * n], in the order of poles.
+// Eigenvalues of matrix[n * n], in the order of compare_poles.
 static status eigenvalues(int n, const double *matrix, double complex *values, fault *f)
 {
     FAULT_IF(!load_lapack(), f, STATUS_SINGULAR,
@@ -78,7 +82,7 @@ static status eigenvalues(int n, const double *matrix, double complex *values, f
         return fault_no_memory(f);
     }
 
-    // those of the transpose, which Fortran sees, are the same
+    // Fortran takes the matrix for its transpose, which has the same eigenvalues
     double *copy = work + size, *real = copy + square, *imaginary = real + n;
     int info = 0;
     memcpy(copy, matrix, square * sizeof *copy);
@@ -113,7 +117,9 @@ status linear_zeros(const linear_system *s, int output, int *count,
     }
     double *next = row + n, *matrix = next + n;
 
-    // the output's derivative, row x + direct u, that sees the input first
+    // Differentiate the output until the input appears: its derivative of this order is
+    //
+    //     row x + direct u,    row = C A^order,    direct = C A^(order - 1) B or D
     double direct = s->d[output];
     int order = 0;
     memcpy(row, s->c + output * n, (size_t)n * sizeof *row);
@@ -133,14 +139,17 @@ status linear_zeros(const linear_system *s, int output, int *count,
         }
     }
 
-    // the command that keeps it at zero leaves the zeros, and that many poles at the
-    // origin
-    for (int i = 0; i < n * n && direct != 0; i++) {
-        matrix[i] = s->a[i] - s->b[i / n] * row[i % n] / direct;
-    }
+    // The input u = -row x/direct keeps the output at zero, with which the states move as
+    // x' = (A - B row/direct) x. The eigenvalues of that matrix are `order` zeros of its
+    // own making at the origin, which come first, and the zeros of the system.
     *count = 0;
     int size = 0;
     if (direct != 0) {
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) {
+                matrix[i * n + j] = s->a[i * n + j] - s->b[i] * row[j] / direct;
+            }
+        }
         *count = n - order;
         size = n;
     }
@@ -161,41 +170,78 @@ double complex linear_answer(const linear_system *s, int output, double complex 
                              double complex *scratch)
 {
     const int n = s->states, one = 1;
-    double complex *x = scratch + n * n, sum = s->d[output];
+    double complex *matrix = scratch, *row = scratch + n * n;
+    int *pivots = (int *)(row + n);
     int info = 1;
 
-    // Fortran sees the transpose of point - A, whose x gives C (point - A)^-1 B as x'B
+    // Fortran takes the matrix point - A for its transpose: it replaces the row by the
+    // solution of row (point - A) = C
     for (int i = 0; i < n * n; i++) {
         const bool diagonal = i % (n + 1) == 0;
-        scratch[i] = (diagonal ? point : 0) - s->a[i];
+        matrix[i] = (diagonal ? point : 0) - s->a[i];
     }
     for (int i = 0; i < n; i++) {
-        x[i] = s->c[output * n + i];
+        row[i] = s->c[output * n + i];
     }
     if (n > 0 && load_lapack()) {
-        solve_complex(&n, &one, scratch, &n, (int *)(x + n), x, &n, &info);
+        solve_complex(&n, &one, matrix, &n, pivots, row, &n, &info);
     }
+
+    // with which the answer is row B + D
+    double complex answer = s->d[output];
     for (int i = 0; i < n; i++) {
-        sum += s->b[i] * x[i];
+        answer += s->b[i] * row[i];
     }
     if (n == 0 || info == 0) {
-        return sum;
+        return answer;
     }
     return complex_of((double)NAN, 0);
 }
 
 // --- answers over frequency ------------------------------------------------------------
 
-// Frequencies: so many in equal ratios, of a loop over so many decades below half its
-// rate, and so many about each vibration, out to where it no longer shows.
-enum { EVEN = 1500, ABOUT = 40, MOST_FREQUENCIES = 20000 };
-#define DECADES 1e4
+enum {
+    EVEN_FREQUENCIES = 1500,    // in equal ratios
+    RESONANCE_FREQUENCIES = 40, // about each vibration of a loop
+    MOST_FREQUENCIES = 20000
+};
+#define LOOP_RANGE 1e4 // highest frequency of a loop over the lowest one
 
-// Puts frequencies for a system with the given poles in order; returns how many.
+// Adds frequencies about a pole of a sampled system, z = exp((-decay + i w) period): on
+// both sides of w, at distances that grow exponentially and are measured in the decay. A
+// real pole gets none. Returns the count with those that were added.
+static int add_about_resonance(double complex pole, double period, double high, double *w,
+                               int count)
+{
+    const double size = cabs(pole);
+    double resonance = 0, decay = 0; // [rad/s], [1/s]
+    if (size > 0) {
+        resonance = carg(pole) / period;
+        decay = fabs(plain_log(size)) / period;
+    }
+    if (resonance <= 0) {
+        return count;
+    }
+    const int half = RESONANCE_FREQUENCIES / 2;
+    for (int k = -half; k <= half && count < MOST_FREQUENCIES; k++) {
+        const double distance =
+            fmax(decay, 1e-9 * resonance) * (plain_exp(0.3 * abs(k)) - 1);
+        const double frequency = k < 0 ? resonance - distance : resonance + distance;
+        if (frequency > 0 && frequency < high) {
+            w[count++] = frequency;
+        }
+    }
+    return count;
+}
+
+// Chooses the frequencies w [rad/s], rising, at which a system with these poles is looked
+// at, and returns how many there are.
 static int choose_frequencies(const double complex *poles, int states, double period,
                               double *w)
 {
-    double low = M_PI / period / DECADES, high = M_PI / period;
+    // a loop up to half its rate; an arm alone from its slowest pole but those at the
+    // origin to its fastest one
+    double low = M_PI / period / LOOP_RANGE, high = M_PI / period;
     int count = 0;
     if (period == 0) {
         low = high = 1;
@@ -210,24 +256,13 @@ static int choose_frequencies(const double complex *poles, int states, double pe
         high *= 10;
         low *= 0.01;
     }
-    for (int i = 0; i < EVEN; i++) {
-        w[count++] = high * plain_pow(low / high, (EVEN - 1 - i) / (EVEN - 1.0));
+
+    for (int i = 0; i < EVEN_FREQUENCIES; i++) {
+        const double share = (EVEN_FREQUENCIES - 1 - i) / (EVEN_FREQUENCIES - 1.0);
+        w[count++] = high * plain_pow(low / high, share);
     }
     for (int i = 0; i < states && period > 0; i++) {
-        const double size = cabs(poles[i]);
-        double at = 0, width = 0; // of the vibration [rad/s]
-        if (size > 0) {
-            at = carg(poles[i]) / period;
-            width = fabs(plain_log(size)) / period;
-        }
-        for (int k = -ABOUT / 2; k <= ABOUT / 2 && at > 0 && count < MOST_FREQUENCIES;
-             k++) {
-            const double off = fmax(width, 1e-9 * at) * (plain_exp(0.3 * abs(k)) - 1);
-            const double near = k < 0 ? at - off : at + off;
-            if (near > 0 && near < high) {
-                w[count++] = near;
-            }
-        }
+        count = add_about_resonance(poles[i], period, high, w, count);
     }
     qsort(w, (size_t)count, sizeof *w, compare_numbers);
     return count;
@@ -269,51 +304,63 @@ status linear_respond(const linear_system *s, int output, double period,
 
 #define MOST_GAIN_DB 120.0 // no law is off by a factor of a million; beyond is rounding
 
-// Takes in a place at which the loop gain is real and negative.
-static void cross_phase(linear_margins *m, double gain)
+// Lowers the gain margins for a crossing of the negative real axis at L = -size: the gain
+// may grow by 1/size, or fall by that much where size exceeds 1.
+static void cross_negative_axis(linear_margins *m, double size)
 {
-    const double db = 20 * plain_log(1 / gain) / plain_log(10);
+    const double db = 20 * plain_log(1 / size) / plain_log(10);
     if (fabs(db) > MOST_GAIN_DB) {
         return;
     }
-    double *least = db >= 0 ? &m->gain_db : &m->gain_down_db;
-    *least = fmin(*least, fabs(db));
+    double *margin = db >= 0 ? &m->gain_db : &m->gain_down_db;
+    *margin = fmin(*margin, fabs(db));
+}
+
+// Lowers the phase and delay margins for the crossing of |L| = 1, if there is one,
+// between points i and i + 1. The crossing is interpolated in log |L|.
+static void cross_unit_circle(linear_margins *m, const linear_response *r, int i)
+{
+    const double complex gain = r->gain[i], next = r->gain[i + 1];
+    const double size = cabs(gain), next_size = cabs(next);
+    if (!((size - 1) * (next_size - 1) <= 0 && size != next_size)) {
+        return;
+    }
+    const double share = plain_log(size) / (plain_log(size) - plain_log(next_size));
+    const double complex crossing = gain + share * (next - gain);
+    const double w = r->frequency[i] + share * (r->frequency[i + 1] - r->frequency[i]);
+
+    // the angle from -1 to the crossing: a delay turns L back by it and reaches -1
+    const double angle = plain_atan2(-cimag(crossing), -creal(crossing));
+    m->phase_deg = fmin(m->phase_deg, fabs(angle) * 180 / M_PI);
+    const double turned_back = angle >= 0 ? angle : angle + 2 * M_PI;
+    m->delay_s = fmin(m->delay_s, turned_back / w);
 }
 
 linear_margins linear_margins_of(const linear_response *r)
 {
     linear_margins m = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
     for (int i = 0; i < r->count; i++) {
-        const double complex here = r->gain[i];
-        m.disk = fmin(m.disk, 2 * cabs(1 + here) / cabs(1 - here));
+        const double complex gain = r->gain[i];
+        const bool is_last = i + 1 == r->count;
+        m.disk = fmin(m.disk, 2 * cabs(1 + gain) / cabs(1 - gain));
 
         // at both ends a sampled loop gain is real, up to rounding
-        const bool real = fabs(cimag(here)) < 1e-9 * cabs(here);
-        if ((i + 1 == r->count || i == 0) && real && creal(here) < 0) {
-            cross_phase(&m, -creal(here));
+        const bool real = fabs(cimag(gain)) < 1e-9 * cabs(gain);
+        if ((is_last || i == 0) && real && creal(gain) < 0) {
+            cross_negative_axis(&m, -creal(gain));
         }
-        if (i + 1 == r->count) {
+        if (is_last) {
             break;
         }
 
+        // what is crossed between this point and the next one
+        cross_unit_circle(&m, r, i);
         const double complex next = r->gain[i + 1];
-        const double size = cabs(here), then = cabs(next);
-        if ((size - 1) * (then - 1) <= 0 && size != then) {
-            const double share = plain_log(size) / (plain_log(size) - plain_log(then));
-            const double complex one = here + share * (next - here);
-            const double w =
-                r->frequency[i] + share * (r->frequency[i + 1] - r->frequency[i]);
-            const double left =
-                plain_atan2(-cimag(one), -creal(one)); // beyond -180 degrees
-            m.phase_deg = fmin(m.phase_deg, fabs(left) * 180 / M_PI);
-            const double turn = left >= 0 ? left : left + 2 * M_PI;
-            m.delay_s = fmin(m.delay_s, turn / w);
-        }
-        if (cimag(here) * cimag(next) <= 0 && cimag(here) != cimag(next)) {
-            const double share = cimag(here) / (cimag(here) - cimag(next));
-            const double at = creal(here) + share * (creal(next) - creal(here));
-            if (at < 0) {
-                cross_phase(&m, -at);
+        if (cimag(gain) * cimag(next) <= 0 && cimag(gain) != cimag(next)) {
+            const double share = cimag(gain) / (cimag(gain) - cimag(next));
+            const double crossing = creal(gain) + share * (creal(next) - creal(gain));
+            if (crossing < 0) {
+                cross_negative_axis(&m, -crossing);
             }
         }
     }

@@ -10,6 +10,8 @@
 // the linear form, and of runs, which take longer.
 enum { BISECTIONS = 40, RUN_BISECTIONS = 12 };
 
+// How fast the slowest part of the closed linear loop grows [1/s]: log|z| over the
+// period, z being the largest pole of the sampled loop.
 static status growth_of(const scenario *s, linear_place place, double *growth, fault *f)
 {
     SCOPED(linear_arm_finish) linear_arm arm = {{0}};
@@ -46,7 +48,8 @@ status linear_stability(const scenario *s, linear_place place, bool by_runs,
 
 status linear_growth(const scenario *s, double *growth, fault *f)
 {
-    return linear_stability(s, LINEAR_CONTACT, false, growth, f);
+    const bool by_runs = false;
+    return linear_stability(s, LINEAR_CONTACT, by_runs, growth, f);
 }
 
 // Where stability changes between the i-th value of a single axis and the one before.
@@ -54,7 +57,7 @@ static status find_limit(const linear_survey *y, size_t i, linear_place place,
                          bool by_runs, double *limit, fault *f)
 {
     double from = y->sweep.axes[0].values[i - 1], to = y->sweep.axes[0].values[i];
-    const bool at_start = linear_is_stable(by_runs, y->numbers[by_runs][i - 1]);
+    const bool stable_at_from = linear_is_stable(by_runs, y->numbers[by_runs][i - 1]);
     const int halvings = by_runs ? RUN_BISECTIONS : BISECTIONS;
     for (int n = 0; n < halvings; n++) {
         const double value = (from + to) / 2;
@@ -62,7 +65,7 @@ static status find_limit(const linear_survey *y, size_t i, linear_place place,
         double number;
         TRY(sweep_axes_scenario(y->sweep.axes, 1, &value, y->sweep.base, &derived, f));
         TRY(linear_stability(&derived, place, by_runs, &number, f));
-        if (linear_is_stable(by_runs, number) == at_start) {
+        if (linear_is_stable(by_runs, number) == stable_at_from) {
             from = value;
         } else {
             to = value;
@@ -72,18 +75,22 @@ static status find_limit(const linear_survey *y, size_t i, linear_place place,
     return STATUS_OK;
 }
 
-// The numbers of combination i, and the limit that lies before it.
+// Finds both numbers of combination i, of the linear form and by a run, and of a single
+// axis the limit between it and the combination before if one is stable and one is not.
 static status survey_one(linear_survey *y, size_t i, linear_place place, fault *f)
 {
     scenario derived;
     TRY(sweep_scenario(&y->sweep, i, &derived, f));
-    for (int k = 0; k < 2; k++) {
-        double *number = &y->numbers[k][i];
-        TRY(linear_stability(&derived, place, k, number, f));
-        if (y->sweep.axis_count == 1 && i > 0 && y->limit_count < LINEAR_MOST_LIMITS &&
-            linear_is_stable(k, number[-1]) != linear_is_stable(k, number[0])) {
-            y->limits[y->limit_count].by_runs = k;
-            TRY(find_limit(y, i, place, k, &y->limits[y->limit_count].value, f));
+    for (int by_runs = 0; by_runs <= 1; by_runs++) {
+        double *numbers = y->numbers[by_runs];
+        TRY(linear_stability(&derived, place, by_runs, &numbers[i], f));
+        if (y->sweep.axis_count != 1 || i == 0 || y->limit_count == LINEAR_MOST_LIMITS) {
+            continue;
+        }
+        const bool stable_before = linear_is_stable(by_runs, numbers[i - 1]);
+        if (linear_is_stable(by_runs, numbers[i]) != stable_before) {
+            y->limits[y->limit_count].by_runs = by_runs;
+            TRY(find_limit(y, i, place, by_runs, &y->limits[y->limit_count].value, f));
             y->limit_count++;
         }
     }
