@@ -45,7 +45,8 @@ TEST(test_a_first_impact_is_told_in_five_sentences)
     check_says(formatted("motor %.3g J", high->motor_work - free->motor_work));
 }
 
-// The number in front of a word, or NaN.
+// The number that stands before the first place of a word in a text; NaN if the text does
+// not have the word.
 static double number_before(const char *text, const char *word)
 {
     const char *at = strstr(text, word);
@@ -70,49 +71,74 @@ static double sum_of_energies(const char *from, const char *to)
     return sum;
 }
 
-// No share is above all or below nothing, no energy above what the arm began with, was
-// given and fell through; and what is given is taken.
-static void check_account(const scenario *s, const run_result *run, const char *of)
+static double zero_if_nan(double x)
+{
+    return isnan(x) ? 0 : x;
+}
+
+// The most energy [J] that any part of a run can have had: what the arm and the wall
+// begin with, all that the motor, pushes and the wall's drive give or take from row to
+// row, and what the weight gives between the highest and the lowest place.
+static double most_energy_of(const trace *t)
+{
+    const sample *first = &t->rows[0];
+    double energy =
+        first->kinetic_energy + first->strain_energy + zero_if_nan(first->wall_energy);
+    for (size_t i = 1; i < t->row_count; i++) {
+        const sample *now = &t->rows[i], *before = now - 1;
+        energy += fabs(now->motor_work - before->motor_work) +
+                  fabs(now->external_work - before->external_work) +
+                  zero_if_nan(fabs(now->wall_work - before->wall_work));
+    }
+
+    // there is no weight, but NaN, where the arm turns in a level plane
+    double high = -HUGE_VAL, low = HUGE_VAL;
+    for (EACH_ROW(row, t)) {
+        high = fmax(high, row->weight_energy);
+        low = fmin(low, row->weight_energy);
+    }
+    return energy + (high > low ? high - low : 0);
+}
+
+// One sentence of an account: its shares, times and energies are possible, and as much
+// energy is taken as is given.
+static void check_sentence(const char *text, double run_time, double most_energy,
+                           const char *changes)
+{
+    const char *end = text + strlen(text);
+    fail_if(end[-1] != '.' || strstr(text, "nan") != NULL || strstr(text, "inf") != NULL,
+            "%s: %s", changes, text);
+
+    // a share is between 0 and 100 %, and nothing lasts longer than the run
+    const double share = number_before(text, " %"), lasts = number_before(text, " s,");
+    fail_if(share < 0 || share > 100, "%s: %s", changes, text);
+    fail_if(lasts < 0 || lasts > run_time * 1.001, "%s: %s", changes, text);
+
+    // each energy, whose number has no more than 12 characters
+    for (const char *at = text; (at = strstr(at, " J")) != NULL; at++) {
+        const double energy = number_before(at - 12 > text ? at - 12 : text, " J");
+        fail_if(energy < 0 || energy > 1.006 * most_energy, "%s: %g J: %s", changes,
+                most_energy, text);
+    }
+
+    // the balance, to within the digits that are printed
+    const char *given = strstr(text, "given by"), *taken = strstr(text, "taken by");
+    if (given != NULL && taken != NULL) {
+        const double gives = sum_of_energies(given, taken),
+                     takes = sum_of_energies(taken, end);
+        fail_if(fabs(gives - takes) > 0.01 * (gives + takes) + 1e-9, "%s: %s", changes,
+                text);
+    }
+}
+
+// The account of a run that these changes of a scenario led to.
+static void check_account(const scenario *s, const run_result *run, const char *changes)
 {
     const int count = run_account(s, run, sentences);
-    const trace *t = &run->trace;
-    const sample *row = t->rows;
-    double there = row->kinetic_energy + row->strain_energy, high = -HUGE_VAL,
-           low = HUGE_VAL;
-    there += isnan(row->wall_energy) ? 0 : row->wall_energy;
-    for (size_t r = 0; r < t->row_count; r++) {
-        const sample *now = row + r, *before = row + (r > 0 ? r - 1 : 0);
-        const double wall = now->wall_work - before->wall_work;
-        there += fabs(now->motor_work - before->motor_work) +
-                 fabs(now->external_work - before->external_work) +
-                 (isnan(wall) ? 0 : fabs(wall));
-        high = fmax(high, now->weight_energy);
-        low = fmin(low, now->weight_energy);
-    }
-    there += high > low ? high - low : 0;
     assert_true(count >= 1 && count <= ACCOUNT_SENTENCES);
+    const double most_energy = most_energy_of(&run->trace);
     for (int k = 0; k < count; k++) {
-        const char *text = sentences[k], *end = text + strlen(text);
-        fail_if(end[-1] != '.' || strstr(text, "nan") != NULL ||
-                    strstr(text, "inf") != NULL,
-                "%s: %s", of, text);
-        const double share = number_before(text, " %"),
-                     lasts = number_before(text, " s,");
-        fail_if(share < 0 || share > 100, "%s: %s", of, text);
-        fail_if(lasts < 0 || lasts > t->rows[t->row_count - 1].time * 1.001, "%s: %s", of,
-                text);
-        for (const char *at = text; (at = strstr(at, " J")) != NULL; at++) {
-            const double energy = number_before(at - 12 > text ? at - 12 : text, " J");
-            fail_if(energy < 0 || energy > 1.006 * there, "%s: %g J: %s", of, there,
-                    text);
-        }
-        const char *given = strstr(text, "given by"), *taken = strstr(text, "taken by");
-        if (given != NULL && taken != NULL) {
-            const double gives = sum_of_energies(given, taken),
-                         takes = sum_of_energies(taken, end);
-            fail_if(fabs(gives - takes) > 0.01 * (gives + takes) + 1e-9, "%s: %s", of,
-                    text);
-        }
+        check_sentence(sentences[k], LAST_ROW(&run->trace)->time, most_energy, changes);
     }
 }
 
@@ -130,7 +156,7 @@ TEST(test_every_scenario_has_an_account_within_bounds)
     free_names(names, count);
 }
 
-// Five hundred arms with walls and drives that are drawn.
+// Five hundred arms whose joints, walls and drives are drawn at random.
 TEST(test_random_arms_have_accounts_within_bounds)
 {
     static const char *const joints[] = {"rigid", "spring arm.k1=90", "beam"};

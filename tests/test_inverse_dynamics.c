@@ -58,9 +58,11 @@ static double complex torque_per_acceleration(const controller_setup *r, double 
     return 1 / (-w * w * tip);
 }
 
-// A window of two seconds in 1024 instants, the tip departing in its middle: transform,
-// divide, transform back. At w = 0 the arm is a rigid body; its acceleration has no mean,
-// its damping has.
+// The law's plan against the same plan by a Fourier series. A window of two seconds has
+// 1024 instants, and the tip departs in its middle. Each frequency w of the tip's
+// acceleration is multiplied by the arm's torque per acceleration at w, and the sum of
+// all is the torque. At w = 0 the arm is a rigid body: the mean of its acceleration is
+// zero, and that of the torque is what the hub's damping takes.
 TEST(plan_is_the_inverse_of_every_frequency)
 {
     enum { COUNT = 1024 };
@@ -70,6 +72,7 @@ TEST(plan_is_the_inverse_of_every_frequency)
     const controller_setup setup = default_setup(values);
     double torque[COUNT] = {0};
     for (int n = 0; n < COUNT / 2; n++) {
+        // the coefficient of the acceleration
         double w = 2 * PI * n / window;
         double complex acceleration = 0;
         for (int k = 0; k < COUNT; k++) {
@@ -78,37 +81,45 @@ TEST(plan_is_the_inverse_of_every_frequency)
             acceleration += there * 2 * PI * WAY / (TRAVEL_TIME * TRAVEL_TIME) *
                             cexp(-i_ * w * k * step) / COUNT;
         }
-        double complex part = n == 0
-                                  ? setup.hub_damping * WAY / window
-                                  : 2 * torque_per_acceleration(&setup, w) * acceleration;
+
+        // that of the torque; 2 as the coefficients of w and -w are added
+        double complex part = setup.hub_damping * WAY / window;
+        if (n > 0) {
+            part = 2 * torque_per_acceleration(&setup, w) * acceleration;
+        }
         for (int k = 0; k < COUNT; k++) {
             torque[k] += creal(part * cexp(i_ * w * k * step));
         }
     }
+
+    // the law, whose plan counts from the first sample
     void *memory = calloc(1, inverse_dynamics_law.memory_size);
+    controller_output out;
     assert_non_null(memory);
     assert_null(inverse_dynamics_law.start(memory, &setup));
-    double largest = 0, wrong = 0, ahead = 0;
+    inverse_dynamics_law.sample(memory, &(controller_input){.time = 0}, &out);
+
+    // both at the same instants: the largest torque, the largest difference, and the
+    // largest torque before the tip departs
+    double largest = 0, largest_error = 0, largest_ahead = 0;
     for (int k = 0; k < COUNT; k++) {
-        controller_output out;
-        // the plan counts from the first sample
         double time = k * step - window / 2 + departure(&setup);
         if (time < 0) {
             continue;
         }
-        if (largest == 0) {
-            inverse_dynamics_law.sample(memory, &(controller_input){.time = 0}, &out);
-        }
         inverse_dynamics_law.sample(memory, &(controller_input){.time = time}, &out);
         double planned = out.command * setup.torque_per_volt;
         largest = fmax(largest, fabs(planned));
-        wrong = fmax(wrong, fabs(planned - torque[k]));
-        ahead = time < departure(&setup) ? fmax(ahead, planned) : ahead;
+        largest_error = fmax(largest_error, fabs(planned - torque[k]));
+        if (time < departure(&setup)) {
+            largest_ahead = fmax(largest_ahead, planned);
+        }
     }
     free(memory);
-    check_below(wrong, 1e-3 * largest);
+    check_below(largest_error, 1e-3 * largest);
+
     // it is not causal: before the tip departs the torque is a good part of its largest
-    check_below(0.1 * largest, ahead);
+    check_below(0.1 * largest, largest_ahead);
 }
 
 TEST(plan_needs_an_arm_that_it_can_invert)
@@ -132,6 +143,7 @@ typedef struct travelled {
     double left_moving; // span of the tip's angle after its arrival, share of the way
 } travelled;
 
+// Moves the arm with these settings in free space, and says how its tip kept to the plan.
 static travelled travel(const char *const *settings)
 {
     const char *all[16] = {"control.law=inverse-dynamics", "control.force=0",
@@ -140,26 +152,34 @@ static travelled travel(const char *const *settings)
     for (int i = 5; *settings != NULL; i++) {
         all[i] = *settings++;
     }
+
+    // when the tip departs and arrives, by the arm that the law takes for granted
     parameters p = rig_parameters(all);
     controller_setup believed = {.link_mass = p.arm.mass / 2,
                                  .link_length = p.arm.length / 2,
                                  .link_inertia = p.arm.link_inertia,
                                  .k2 = p.arm.k2 * p.belief.k2_factor};
     double departs = departure(&believed), arrives = departs + TRAVEL_TIME;
+
+    // the run
     KEPT_RUN(r) = rig_run(all, true);
     travelled result = {0};
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (size_t i = 0; i < r.trace.row_count; i++) {
         const sample *row = &r.trace.rows[i];
+        // the tip's deviation from its plan, as a share of the way
         double tip = (row->first_angle + row->last_angle) / 2 + WAY;
         double error = (tip - planned_tip(row->time - departs)) / WAY;
         result.tip_error += error * error / (double)r.trace.row_count;
+
+        // how far hub and tip have come when the tip is to depart
         if (row->time <= departs) {
             result.hub_ahead = (row->hub_angle + WAY) / WAY;
             result.tip_ahead = tip / WAY;
         }
-        if (row->time >
-            arrives + 0.25) { // what the hub does after the tip's arrival has died away
+
+        // what the tip moves after its arrival, when the hub has come to rest
+        if (row->time > arrives + 0.25) {
             low = fmin(low, tip);
             high = fmax(high, tip);
         }

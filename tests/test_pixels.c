@@ -33,7 +33,10 @@ static void forget(decoded *d)
 
 // --- decoders --------------------------------------------------------------------------
 
-// What a VT340 makes of a sixel picture, by the book of 1988.
+// The pixels that a terminal of 1988 (VT340) shows of a sixel picture. "#n" chooses a
+// colour and "#n;2;r;g;b" defines one in percent; "!n" repeats the next character n
+// times; "$" returns to the left margin and "-" goes to the next band of six rows. Any
+// other character, less "?", has a bit for each of the six pixels below each other.
 static decoded decode_sixel(const char *text)
 {
     uint32_t colours[SIXEL_COLOURS] = {0}, colour = 0;
@@ -42,6 +45,7 @@ static decoded decode_sixel(const char *text)
     assert_int_equal(sscanf(text + 13, "%d;%d%n", &width, &height, &used), 2);
     const decoded d = unset_pixels(width, height);
     for (const char *at = text + 13 + used; *at != '\033';) {
+        // a colour
         int count = 1;
         if (*at == '#') {
             const int numbers =
@@ -59,13 +63,19 @@ static decoded decode_sixel(const char *text)
             at += 1 + strspn(at + 1, "0123456789;");
             continue;
         }
+
+        // a repetition
         if (*at == '!') {
             assert_int_equal(sscanf(at, "!%d%n", &count, &used), 1);
             at += used;
         }
-        if (*at == '$' || *at == '-') {
+
+        // a new line, or pixels
+        if (*at == '$') {
             x = 0;
-            top += *at == '-' ? 6 : 0;
+        } else if (*at == '-') {
+            x = 0;
+            top += 6;
         } else {
             assert_in_range(*at, '?', '~');
             for (int i = 0; i < count; i++, x++) {
@@ -94,7 +104,9 @@ static int digit_of(char c)
     return (int)(found - digits);
 }
 
-// What kitty makes of the chunks of one picture.
+// The pixels that the terminal kitty shows of one picture. Its bytes, red, green and
+// blue, are compressed by zlib, coded in base 64 and sent in chunks of at most 4096
+// characters; m=1 in a chunk's head says that more chunks follow.
 static decoded decode_kitty(const char *text, int *columns, int *rows)
 {
     SCOPED(free_kept) unsigned char *packed = malloc(strlen(text));
@@ -106,6 +118,8 @@ static decoded decode_kitty(const char *text, int *columns, int *rows)
         6);
     const char *at = text + used;
     for (;;) {
+        // four characters of base 64 are three bytes; each "=" at the end is one byte
+        // less
         const char *end = strchr(at, '\033');
         assert_int_equal((end - at) % 4, 0);
         assert_true(end - at <= 4096);
@@ -117,8 +131,14 @@ static decoded decode_kitty(const char *text, int *columns, int *rows)
             packed[size++] = (unsigned char)(bits >> 16);
             packed[size++] = (unsigned char)(bits >> 8);
             packed[size++] = (unsigned char)bits;
-            size -= (at[2] == '=') + (at[3] == '=');
+            for (int i = 2; i < 4; i++) {
+                if (at[i] == '=') {
+                    size--;
+                }
+            }
         }
+
+        // the end of the chunk, and the head of the next one
         assert_int_equal(strncmp(end, "\033\\", 2), 0);
         at = end + 2;
         if (more == 0) {
@@ -129,6 +149,7 @@ static decoded decode_kitty(const char *text, int *columns, int *rows)
     }
     assert_int_equal(*at, '\0');
 
+    // uncompressed it is exactly the picture's size
     const decoded d = unset_pixels(width, height);
     uLongf plain_size = 3 * (uLongf)d.width * (uLongf)d.height, wanted = plain_size;
     SCOPED(free_kept) unsigned char *plain = malloc(plain_size);
