@@ -3,41 +3,38 @@
 // engine is wrong.
 //
 //     random_arms [NAME=VALUE]...
-//         count=200 first=0 least=1 most=8       arms FIRST to FIRST + COUNT - 1 of so
-//         many links engine=auto                            or a value of method.engine
-//         by=explicit                            implicit (to 24 links, which knows no
-//         moving walls
-//                                                and no tilt), fine (the same engine at a
-//                                                hundredth of its tolerance), or a value
-//                                                of method.engine
-//         gate=a                                 limits: a 1e-9 s, 1e-7 of momentum, 1e-6
-//         of the peak;
-//                                                b 1e-11 s, 1e-9, 1e-8
-//         damping=1                              largest damping ratio
-//         tolerance=0                            or one of the engine's steps, with which
-//         the ledgers
-//                                                close to 1e-10 of what was put in
-//         place=near                             near: links soon meet a wall at 0.1 rad;
-//         whole:
-//                                                half of them one link, walls by decades
-//                                                and at any angle, starts to both of
-//                                                their sides
-//         moves=0                                1: walls that move, arms in tilted
-//         planes, or both,
-//                                                beside one to three features
-//         tight=0                                1: half of them one link, walls with a
-//         restitution
-//                                                up to 1, currents limited down to 1e-4
-//                                                A, mostly
-//         cost=0                                 1: processor time of both, and their
-//         ratio
 //
-// Arm i is made of its own number. A limit is the stated one, or ten times what a mass of
-// 1e-12 more, in a place a few roundings away, changes in the reference, whichever is
-// larger: bounces amplify. Limits of momentum are shares of what the wall took, and at
-// least of a thousandth of what the arm can have. Where the reference does not agree with
-// itself at another tolerance nothing is said. An arm that starts behind its wall must be
-// refused, and no other for where it starts.
+// The names with their defaults:
+//
+//     count=200     how many arms there are
+//     first=0       the number of the first one
+//     least=1       the least number of links
+//     most=8        the largest number of links
+//     engine=auto   the engine under test, a value of method.engine
+//     by=explicit   the reference: explicit; implicit, for arms of 24 links at most
+//                   that are not tilted and whose wall does not move; fine, the same
+//                   engine at a hundredth of its tolerance; or a value of method.engine
+//     gate=a        limits: a 1e-9 s, 1e-7 of the momentum, 1e-6 of the peak;
+//                   b 1e-11 s, 1e-9 and 1e-8
+//     damping=1     the largest damping ratio
+//     tolerance=0   tolerance of the engine's steps, with which the ledgers close to
+//                   1e-10 of what was put in; 0 stands for its own
+//     place=near    near: links soon meet a wall at 0.1 rad; whole: half of the arms have
+//                   one link, walls differ by powers of ten, are at any angle and are met
+//                   from both sides
+//     moves=0       1: walls that move, arms in tilted planes, or both, beside one to
+//                   three features
+//     tight=0       1: half of the arms have one link, walls have a restitution up to 1,
+//                   most currents are limited, down to 1e-4 A
+//     cost=0        1: prints the processor time of both, and their ratio
+//
+// Arm i is drawn with the seed i. Bounces amplify what is different at the start. So a
+// limit is the larger one of two: the one stated above, and ten times what changes in the
+// reference when the arm has 1e-12 more of mass and starts a few roundings away. Limits
+// of the momentum are shares of the momentum that the wall took, and at least of a
+// thousandth of the most that the arm can have. Where the reference does not agree with
+// itself at another tolerance, the arm counts as unsure. An arm that starts behind its
+// wall must be refused, and no other for where it starts.
 #include <time.h>
 
 #include "src/base/clock.h"
@@ -64,16 +61,18 @@
 
 enum { LONGEST_LIST = 20 };
 
+// What the command line asks for; its names are explained above.
 typedef struct options {
     int count, first, least, most;
     char engine[32], by[32];
-    bool strict, cost, whole, moves, tight;
+    bool strict, cost, whole, moves, tight; // strict: gate=b; whole: place=whole
     double damping, tolerance;
 } options;
 
-// What may be.
+// By how much two outcomes may differ.
 typedef struct limits {
-    double time, momentum, peak;
+    double time;           // of contacts [s]
+    double momentum, peak; // shares
 } limits;
 
 static bool chance(random_generator *g, double share)
@@ -385,12 +384,12 @@ static bool can_follow(const random_arm *r, const options *o)
            (!o->moves && r->parameters.arm.links <= IMPLICIT_MOST);
 }
 
-// Distances of two outcomes: contacts as instants times their share of the first speed of
-// approach, momentum and peak as shares.
+// By how much two outcomes differ. The instant of a contact counts by the share of its
+// speed in that of the first one; momentum, peak and losses are shares.
 typedef struct distances {
     double time[OUTCOME_CONTACTS], momentum, peak, peak_time, lost;
-    int contacts; // in common
-    bool same;    // as many contacts
+    int contacts; // that both have
+    bool same;    // both have as many contacts
 } distances;
 
 // Width of the interval in which the model determines the force on a wall that holds the
@@ -416,6 +415,8 @@ static distances distances_of(const random_arm *r, const chain_outcome *a,
         const double apart = fabs(a->contact_times[i] - b->contact_times[i]);
         d.time[i] = apart * a->contact_speeds[i] < LEAST_GAP ? 0 : apart * graze;
     }
+
+    // the momentum that the wall has taken by each sample
     const int samples = a->samples < b->samples ? a->samples : b->samples;
     for (int i = 0; i < samples; i++) {
         const double apart = fabs(a->momentum[i] - b->momentum[i]);
@@ -427,13 +428,16 @@ static distances distances_of(const random_arm *r, const chain_outcome *a,
         const double own = LEAST_SHARE * sqrt(2 * mass * fmax(a->put_in, LEAST_WORK));
         d.momentum /= fmax(fabs(a->momentum[samples - 1]), own);
     }
+
+    // the largest force and its instant; a wall that swings makes several equal ones
     if (a->peak > 0) {
         d.peak = fabs(a->peak - fmax(b->peak, 0)) / fmax(a->peak, LEAST_FORCE);
     }
-    if (r->parameters.wall.motion ==
-        MOTION_NONE) { // a wall that swings makes equal peaks
+    if (r->parameters.wall.motion == MOTION_NONE) {
         d.peak_time = fabs(a->peak_time - b->peak_time);
     }
+
+    // work and losses
     const double put_in = fmax(fmax(a->put_in, b->put_in), LEAST_WORK);
     d.lost = fabs(a->motor_work - b->motor_work) / put_in;
     for (size_t i = 0; i < sizeof a->lost / sizeof *a->lost; i++) {
@@ -442,8 +446,8 @@ static distances distances_of(const random_arm *r, const chain_outcome *a,
     return d;
 }
 
-// The largest of the distances as a multiple of what may be; `change` is what next to
-// nothing does.
+// The largest of the distances as a multiple of its limit. `change` has the distances
+// between two references that differ by next to nothing.
 static double worst_of(const distances *d, const distances *change, const limits *may)
 {
     double worst = 0;
@@ -456,12 +460,15 @@ static double worst_of(const distances *d, const distances *change, const limits
     return fmax(worst, d->peak / fmax(may->peak, 10 * change->peak));
 }
 
+// Takes "NAME=VALUE"; false if it is none of the options.
 static bool take_option(options *o, const char *text)
 {
     char name[16], value[32];
     if (sscanf(text, "%15[^=]=%31s", name, value) != 2) {
         return false;
     }
+
+    // whole numbers
     const struct {
         const char *name;
         int *number;
@@ -475,8 +482,12 @@ static bool take_option(options *o, const char *text)
             return true;
         }
     }
-    if (strcmp(name, "engine") == 0 || strcmp(name, "by") == 0) {
-        strcpy(name[0] == 'e' ? o->engine : o->by, value);
+
+    // others
+    if (strcmp(name, "engine") == 0) {
+        strcpy(o->engine, value);
+    } else if (strcmp(name, "by") == 0) {
+        strcpy(o->by, value);
     } else if (strcmp(name, "gate") == 0) {
         o->strict = value[0] == 'b';
     } else if (strcmp(name, "place") == 0) {
@@ -497,10 +508,14 @@ static bool take_option(options *o, const char *text)
     return true;
 }
 
-// Counts of what came of the arms.
+// What came of the arms.
 typedef struct tally {
-    int compared, wrong, said, unsure, behind, refused;
-    double largest, most_cost, open;
+    int compared, wrong;
+    int said;            // the run itself says that it failed or is inaccurate
+    int unsure;          // the reference is
+    int behind, refused; // started behind its wall; cannot be computed
+    double largest;      // distance, as a multiple of its limit
+    double most_cost, open;
 } tally;
 
 // Whether the implicit reference finds what the run did: the explicit one takes a touch
@@ -520,23 +535,42 @@ static bool implicit_agrees(const random_arm *r, const options *o,
     return finer.status == STATUS_OK && d.same && worst_of(&d, &change, may) <= 1;
 }
 
+// Whether the mean force between two samples of the momentum is one that the force had.
+static bool means_are_possible(const chain_outcome *o)
+{
+    for (int i = 1; i < o->samples; i++) {
+        const double mean = (o->momentum[i] - o->momentum[i - 1]) / REFERENCE_INTERVAL;
+        if (!mean_is_within(mean, fmax(o->peak, 0), o->impulses, REFERENCE_INTERVAL)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Runs an arm by the engine and by the reference, and counts what comes of it.
 static void try_arm(random_arm *r, int number, const options *o, tally *t)
 {
     const limits may =
         o->strict ? (limits){1e-11, 1e-9, 1e-8} : (limits){1e-9, 1e-7, 1e-6};
+
+    // an arm behind its wall must be refused
     const bool resolved = resolve_arm(r);
     const parameters *p = &r->parameters;
     const bool behind =
         p->initial.angle > p->wall.angle || p->initial.angle < p->wall.angle - M_PI;
     if (behind) {
         t->behind++;
-        t->wrong += resolved;
+        if (resolved) {
+            t->wrong++;
+        }
         return;
     }
     if (!resolved || !can_follow(r, o)) {
         t->refused++;
         return;
     }
+
+    // both outcomes, and what they cost
     double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     const chain_outcome mine = by_setting(r, &r->parameters, "method.engine", o->engine);
     const double cost = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
@@ -548,35 +582,34 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         return;
     }
 
+    // a run that failed, or whose ledger is open, says so itself. No progress is no limit
+    // of these arms
     char what[300];
-
-    // failed or open: said
     t->compared++;
     const double least = o->tolerance > 0 ? 1e-10 : o->strict ? 1e-9 : 1e-7;
     const bool closes = mine.residual <= least * fmax(mine.put_in, LEAST_WORK);
     if (mine.status != STATUS_OK || mine.residual > r->parameters.method.residual_bound *
                                                         fmax(mine.put_in, LEAST_WORK)) {
         t->said++;
-        t->wrong += mine.status == STATUS_NO_PROGRESS; // which is no limit of these arms
+        if (mine.status == STATUS_NO_PROGRESS) {
+            t->wrong++;
+        }
         snprintf(what, sizeof what, "%s, ledger %.3g of %.3g J", status_text(mine.status),
                  mine.residual, mine.put_in);
         describe(r, number, what);
         return;
     }
-    for (int i = 1; i < mine.samples; i++) {
-        const double mean =
-            (mine.momentum[i] - mine.momentum[i - 1]) / REFERENCE_INTERVAL;
-        if (!mean_is_within(mean, fmax(mine.peak, 0), mine.impulses,
-                            REFERENCE_INTERVAL)) {
-            describe(r, number, "WRONG: a mean that the force never was");
-            t->wrong++;
-            return;
-        }
+    if (!means_are_possible(&mine)) {
+        describe(r, number, "WRONG: a mean that the force never was");
+        t->wrong++;
+        return;
     }
+
+    // where the two differ by too much, the reference is asked again: at a finer
+    // tolerance and with next to nothing of mass more
     distances d = distances_of(r, &truth, &mine);
     const distances none = {0};
     double worst = worst_of(&d, &none, &may);
-
     if (!d.same || worst > 1 || !closes) {
         const chain_outcome again = by_reference(r, o, 0, 2);
         const chain_outcome heavier = by_reference(r, o, NEXT_TO_NONE, 1);
@@ -604,7 +637,11 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
                      at + 1, d.contacts > 0 ? d.time[at] : 0, d.momentum, d.peak, d.lost,
                      mine.residual / mine.put_in);
             describe(r, number, what);
-            *(sure ? &t->wrong : &t->unsure) += 1;
+            if (sure) {
+                t->wrong++;
+            } else {
+                t->unsure++;
+            }
             return;
         }
     }

@@ -239,7 +239,10 @@ static int chance(random_generator *r, int limit)
     return (int)random_below(r, (uint64_t)limit);
 }
 
-TEST(test_random_keys_do_no_harm)
+// A key to press at random: in two of three cases a printable character, else one of the
+// list. Escape takes the place of what would take long or write a file: a command that
+// begins with "s" like "save" ("set" may be entered), and x, which lengthens the run.
+static int random_key(random_generator *r, const explorer *ex)
 {
     static const int keys[] = {KEY_CODE_LEFT,
                                KEY_CODE_RIGHT,
@@ -257,17 +260,32 @@ TEST(test_random_keys_do_no_harm)
                                KEY_CODE_DELETE,
                                0x3b8,
                                0};
+    int key;
+    if (chance(r, 3) > 0) {
+        key = ' ' + chance(r, 95);
+    } else {
+        key = keys[chance(r, 16)];
+    }
+
+    const char *command = ex->input.prompt.text;
+    const bool saves = ex->input.prompt.open && strncmp(command, "s", 1) == 0 &&
+                       strncmp(command, "set ", 4) != 0;
+    const bool is_long = ex->model.session.effective.parameters.run.duration > 3;
+    if (saves || (is_long && key == 'x')) {
+        return KEY_CODE_ESCAPE;
+    }
+    return key;
+}
+
+TEST(test_random_keys_do_no_harm)
+{
     random_generator r = seeded(6);
     OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < 4000; i++) {
-        bool saving =
-            ex.input.prompt.open && (strncmp(ex.input.prompt.text, "s", 1) == 0 &&
-                                     strncmp(ex.input.prompt.text, "set ", 4) != 0);
-        bool lengthens = ex.model.session.effective.parameters.run.duration > 3;
-        int key = chance(&r, 3) > 0 ? ' ' + chance(&r, 95) : keys[chance(&r, 16)];
-        key = saving || (lengthens && key == 'x') ? KEY_CODE_ESCAPE : key;
-        explorer_key(&ex, key);
+        explorer_key(&ex, random_key(&r, &ex));
         ex.input.quit = false;
+
+        // now and then time passes, the mouse clicks, and a screen of any size is drawn
         if (i % 7 == 0) {
             act_advance(&ex.model, &ex.view, &ex.input, random_uniform(&r));
             click_at(&ex, chance(&r, 130), chance(&r, 45));
@@ -276,6 +294,7 @@ TEST(test_random_keys_do_no_harm)
                          (glyph_set)chance(&r, GLYPH_SETS)));
         }
     }
+
     // what was done can be saved, and gives the same run
     free(save_and_compare(&ex.model.session));
 }

@@ -75,7 +75,8 @@ static const char *const *const any_arms[] = {
              "arm.link_lengths=0.2,0.5,0.3", "arm.tip_mass=0.05"),
 };
 
-// A product x'A y is what the energy of both together has more than that of each.
+// With the quadratic energy E(x) = x'A x / 2 an element of its matrix is
+// A_jk = E(e_j + e_k) - E(e_j) - E(e_k), e_j being the unit vector of the coordinate j.
 TEST(matrices_are_those_of_the_energies)
 {
     for (EACH(c, any_arms)) {
@@ -104,11 +105,24 @@ TEST(matrices_are_those_of_the_energies)
     }
 }
 
-// (K - w^2 M) x is nothing but what holds the hub and a force on the tip, at whose levers
-// the links are; and the tip is where it is held.
+// The lever of a force on the tip with which it turns the coordinate j: the length of the
+// link, and nothing for the hub.
+static double lever_of_tip(const arm *a, int j)
+{
+    if (j < a->first) {
+        return 0;
+    }
+    return arm_link_of(a, j - a->first).length;
+}
+
+// (K - w^2 M) x, the torques that a mode with the frequency w and the shape x leaves
+// over, are zero but for those that hold the arm: one on a locked hub, and those of a
+// force on a pinned tip, which turns each link by its lever. And such a hub and tip do
+// not move.
 TEST(every_mode_balances_but_for_what_holds_the_arm)
 {
     for (size_t i = 0; i < 4 * sizeof any_arms / sizeof any_arms[0]; i++) {
+        // each arm with both kinds of hub and of tip
         const hub_end hub = i % 2 ? HUB_LOCKED : HUB_FREE;
         const tip_end tip = i / 2 % 2 ? TIP_PINNED : TIP_FREE;
         arm a = arm_with(any_arms[i / 4]);
@@ -118,6 +132,7 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
         const arm_modes m = modes_of(&a, hub, tip);
         assert_int_equal(m.count, n - (hub == HUB_LOCKED) - (tip == TIP_PINNED));
         for (int mode = 0; mode < m.count; mode++) {
+            // what is left over, and how far the tip moves
             const double *x = m.shapes + mode * n;
             double left[9], largest = 0, deflection = 0, scale = 0;
             for (int j = 0; j < n; j++) {
@@ -130,19 +145,24 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
                 scale = fmax(scale, stiffness[j * n + j]);
                 largest = fmax(largest, x[j]);
                 assert_true(fabs(x[j]) <= 1);
-                deflection +=
-                    j >= a.first ? arm_link_of(&a, j - a.first).length * x[j] : 0;
+                deflection += lever_of_tip(&a, j) * x[j];
             }
+
+            // the shape is scaled to 1, modes are in order, and what is held stays
             check_close(largest, 1, 0);
             assert_true(mode == 0 || m.w[mode] >= m.w[mode - 1]);
             check_close(hub == HUB_LOCKED ? x[0] : 0, 0, 0);
             check_close(tip == TIP_PINNED ? deflection : 0, 0, 1e-12);
-            const double force =
-                tip == TIP_PINNED ? left[n - 1] / arm_link_of(&a, a.links - 1).length : 0;
-            for (int j = hub == HUB_LOCKED; j < n; j++) {
-                const double lever =
-                    j >= a.first ? arm_link_of(&a, j - a.first).length : 0;
-                check_close(left[j], force * lever, 1e-9 * scale);
+
+            // the force on the tip follows from the last link; a locked hub takes
+            // anything
+            double force = 0;
+            if (tip == TIP_PINNED) {
+                force = left[n - 1] / lever_of_tip(&a, n - 1);
+            }
+            const int first_free = hub == HUB_LOCKED ? 1 : 0;
+            for (int j = first_free; j < n; j++) {
+                check_close(left[j], force * lever_of_tip(&a, j), 1e-9 * scale);
             }
         }
     }

@@ -283,35 +283,65 @@ TEST(prediction_does_not_depend_on_where_the_corrected_arm_stands)
     }
 }
 
+// The arm of a trial: the printed one, or the corrected one on a rigid hub or a spring.
+static parameters arm_of_trial(int trial)
+{
+    if (trial % 3 == 0) {
+        return defaults_of(ARM_PRINTED);
+    }
+    if (trial % 3 == 1) {
+        return corrected_with(HUB_RIGID);
+    }
+    return corrected_with(HUB_SPRING);
+}
+
+static int wall_of_trial(int trial)
+{
+    if (trial % 5 == 0) {
+        return WALL_NONE;
+    }
+    if (trial % 2 != 0 && trial % 3 != 0) {
+        return WALL_PLANE;
+    }
+    return WALL_POINT;
+}
+
+// What a predictor says of any arm in any state is possible: a force above zero and below
+// 10 kN and, by all but the first, which knows neither, a delay up to 100 s and an
+// impulse that pushes.
 TEST(no_state_gives_garbage)
 {
     unsigned seed = 12;
     int held = 0;
     for (int trial = 0; trial < 3000; trial++) {
-        parameters p = trial % 3 == 0   ? defaults_of(ARM_PRINTED)
-                       : trial % 3 == 1 ? corrected_with(HUB_RIGID)
-                                        : corrected_with(HUB_SPRING);
+        // the arm
+        parameters p = arm_of_trial(trial);
         p.arm.k2 *= pow(10, 1 + noise(&seed));
         p.arm.k1 *= pow(10, 2 * noise(&seed));
         p.motor.voltage = 10 * noise(&seed);
-        p.wall.kind = trial % 5 == 0           ? WALL_NONE
-                      : trial % 2 && trial % 3 ? WALL_PLANE
-                                               : WALL_POINT;
+        p.wall.kind = wall_of_trial(trial);
+
+        // its state; the hub's joint bends by no more than a motor and a beam can bend it
         three_body_state s;
         for (int i = 0; i < 3; i++) {
             s.angle[i] = 0.2 * noise(&seed);
             s.velocity[i] = 5 * noise(&seed);
         }
-        // what a motor and a beam can bend the hub's joint by
         s.angle[0] = s.angle[1] + 10 * noise(&seed) / p.arm.k1;
+
+        // the predictions
         for (int i = 0; i < 3; i++) {
             const prediction out = predicted(predictors[i], &p, &s);
-            if (out.holds) {
-                held++;
-                assert_true(out.force > 0 && out.force < 1e4);
-                assert_true(i == 0 ? isnan(out.delay)
-                                   : out.delay > 0 && out.delay <= 100);
-                assert_true(i == 0 || out.impulse >= 0);
+            if (!out.holds) {
+                continue;
+            }
+            held++;
+            assert_true(out.force > 0 && out.force < 1e4);
+            if (i == 0) {
+                assert_true(isnan(out.delay));
+            } else {
+                assert_true(out.delay > 0 && out.delay <= 100);
+                assert_true(out.impulse >= 0);
             }
         }
     }

@@ -42,8 +42,9 @@ static char *copy_plain_field(char *from, char **to)
     return from;
 }
 
-// The same of a quoted field, from behind its first quote on: two quotes are one of the
-// text, and what follows the last quote belongs to the field, too.
+// Copies a quoted field, from behind its first quote on, and returns where it ends. Two
+// quotes in it stand for one; what stands between its last quote and the next comma
+// belongs to the field, too. *line counts the line ends in it.
 static char *copy_quoted_field(char *from, char **to, int *line)
 {
     while (*from != '\0' && !(from[0] == '"' && from[1] != '"')) {
@@ -66,8 +67,10 @@ static char *copy_quoted_field(char *from, char **to, int *line)
     return from;
 }
 
-// Takes a field off the text: without quotes and blanks at its ends, ended by a 0. *last:
-// it ends its row; *line counts line ends, *text is NULL behind the last row.
+// Takes the first field off the text and returns it without quotes and without blanks at
+// its ends; it is a text of its own, as a 0 is put behind it. Sets *last if it is the
+// last field of its row, adds the line ends it has to *line, and sets *text to what
+// follows, NULL if nothing does.
 static char *next_field(char **text, bool *last, int *line)
 {
     char *from = *text;
@@ -100,8 +103,8 @@ static char *next_field(char **text, bool *last, int *line)
     return field;
 }
 
-// Takes a row off the text that has as many fields as there are headings; an empty line
-// is none.
+// Takes the first row off the text and adds it to the table. It must have as many fields
+// as there are headings; an empty line is skipped.
 static status take_table_row(csv_table *t, char **text, int *line, fault *f)
 {
     const int begin = *line;

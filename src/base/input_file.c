@@ -67,7 +67,8 @@ status input_file_fault(const char *path, const fault *why, fault *f)
     return fault_set(f, why->code, "'%.300s' %.600s", path, why->text);
 }
 
-// The bytes of a stream, a 0 behind them, or its first `most`; NULL with errno.
+// The bytes of a stream, or its first `most`, on the heap with a 0 behind them. NULL and
+// a reason in errno if they cannot be read.
 static char *read_bytes(FILE *file, size_t most, size_t *length)
 {
     enum { FIRST_ROOM = 65536 };
@@ -78,12 +79,12 @@ static char *read_bytes(FILE *file, size_t most, size_t *length)
     // room doubles until the file ends in it
     do {
         room = 2 * room < most ? 2 * room : most;
-        char *more = realloc(bytes, room + 1);
-        if (more == NULL) {
+        char *larger = realloc(bytes, room + 1);
+        if (larger == NULL) {
             free(bytes);
             return NULL;
         }
-        bytes = more;
+        bytes = larger;
         *length += fread(bytes + *length, 1, room - *length, file);
     } while (*length == room && room < most);
 

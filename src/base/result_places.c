@@ -7,6 +7,7 @@
 
 #include "src/base/whole_file.h"
 
+// Paths of results as they were added, for the whole program.
 enum { MOST_RESULTS = 16 };
 static char results[MOST_RESULTS][PATH_MAX];
 static int result_count;

@@ -4,11 +4,14 @@
 
 #include <stdbool.h>
 
-// Names a place. False where another result goes there already. One at a time, and no
-// thread reads meanwhile.
+// Adds the place of a result; there are 16 at most. False where another result goes there
+// already. Not to be called while another thread calls any of these functions.
 bool result_places_add(const char *path);
 
-// The result that goes to the place to which `path` leads, NULL if none does.
+// The path of the result that goes to the place to which `path` leads, as it was added;
+// NULL if none does. The text belongs to this list and lasts until
+// result_places_forget().
 const char *result_places_find(const char *path);
 
+// Empties the list.
 void result_places_forget(void);

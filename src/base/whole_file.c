@@ -42,14 +42,15 @@ static const char *folder_of(const char *path, char folder[PATH_MAX])
     return folder;
 }
 
-// Whether what has a mode, 0 for nothing, is written as it stands: a device, a pipe.
+// Whether something with this mode is written in place and not replaced: a device or a
+// pipe. The mode is 0 where there is nothing.
 static bool is_in_place(mode_t mode)
 {
     return mode != 0 && !S_ISREG(mode);
 }
 
-// Where a path leads and the mode of what is there, 0 for nothing. 0, or the reason why
-// that can be neither replaced nor created.
+// Finds where a path leads, through links, and the mode of what is there, 0 for nothing.
+// Returns 0, or the errno for which it can be neither replaced nor created.
 static int find_target(const char *path, char target[PATH_MAX], mode_t *mode)
 {
     struct stat about = {.st_mode = 0};

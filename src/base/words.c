@@ -171,7 +171,8 @@ static int length_by_first_byte(unsigned char first)
     return 0;
 }
 
-// Length in bytes of the whole character that begins at c, 0 if none does; its number.
+// Length in bytes of the character of UTF-8 that begins at c, 0 if no whole one does;
+// sets *number to its number in Unicode.
 static int whole_character(const unsigned char *c, uint32_t *number)
 {
     const int length = length_by_first_byte(*c);
@@ -189,7 +190,8 @@ static int whole_character(const unsigned char *c, uint32_t *number)
         *number = *number << 6 | (c[i] & 0x3fu);
     }
 
-    // written longer than it is, half of a pair, or beyond the last one
+    // more bytes than the number needs, half of a surrogate pair, or a number beyond the
+    // last character of Unicode
     const bool broken = (length == 3 && *number < 0x800) ||
                         (length == 4 && *number < 0x10000) ||
                         (*number >= 0xd800 && *number < 0xe000) || *number > 0x10ffff;
