@@ -6,15 +6,19 @@
 
 GIVEN_BACK(motion, motion_destroy)
 
-#define SENSOR 1e-3  // time constant [s]
-#define LOWEST 1e-11 // flight, its time by its speed at the end [m]
-#define SLOWEST                                                                          \
-    1e-8 // and that speed: of an arm that friction held at the wall it is rounding [m/s]
+#define SENSOR 1e-3 // time constant [s]
+
+// The lowest flight, measured by its time multiplied by its speed at the end [m], and the
+// least such speed [m/s]. What is below is rounding, of an arm that friction holds.
+#define LOWEST  1e-11
+#define SLOWEST 1e-8
+
 #define NOTHING 1e-12 // momentum of a wall that is not pressed on [N s]
 
 enum { MOST_EVENTS = 200000 };
 
-// Looks at the momentum, one an interval from first contact on.
+// Notes the momentum that the wall has taken, at each interval since first contact that
+// the last step has passed. The step began at `before`.
 static void take_samples(const arm *a, motion *m, double before, double impulses,
                          chain_outcome *o)
 {
@@ -63,19 +67,26 @@ chain_outcome chain_outcome_of(const chain_start *start)
     assert_non_null(m);
     motion_start(&a, m, start->angle, start->velocity);
     chain_outcome o = {.first_contact = (double)NAN};
+
+    // an arm that starts on its wall
     double impulses = 0, end = start->duration, parted = 0;
     if (m->state[SLOT_CONTACT] != 0) {
         o.first_contact = 0;
         o.momentum[o.samples++] = 0;
         end = fmin(end, start->after_contact);
     }
+
     for (int events = 0; m->state[SLOT_TIME] < end; events++) {
+        // a step, up to the next event at most
         motion_report r;
         const double before_contact = m->state[SLOT_CONTACT];
         const double before = m->state[SLOT_TIME], work = motion_motor_work(m, m->state);
         const double pushed = state_quadratures(m, m->state)[QUADRATURE_PUSHED];
-        o.status = events < MOST_EVENTS ? motion_step(&a, m, end, p->method.step, &r)
-                                        : STATUS_NO_PROGRESS;
+        if (events == MOST_EVENTS) {
+            o.status = STATUS_NO_PROGRESS;
+            break;
+        }
+        o.status = motion_step(&a, m, end, p->method.step, &r);
         if (o.status != STATUS_OK) {
             break;
         }
@@ -92,7 +103,9 @@ chain_outcome chain_outcome_of(const chain_start *start)
         const bool waited = isnan(o.first_contact);
         impulses += r.impulse;
         o.impulses = impulses;
-        o.impacts += r.event == MOTION_IMPACT;
+        if (r.event == MOTION_IMPACT) {
+            o.impacts++;
+        }
         if (r.event == MOTION_IMPACT ||
             (r.event == MOTION_TOUCH && before_contact == 0)) {
             chain_outcome_note(&o, now, speed, parted);
@@ -110,13 +123,16 @@ chain_outcome chain_outcome_of(const chain_start *start)
             o.first_impulse = r.impulse;
             o.momentum[o.samples++] = impulses;
         }
-        end = isnan(o.first_contact)
-                  ? start->duration
-                  : fmin(start->duration, o.first_contact + start->after_contact);
+        end = start->duration;
+        if (!isnan(o.first_contact)) {
+            end = fmin(end, o.first_contact + start->after_contact);
+        }
         if (start->most_contacts > 0 && o.contacts >= start->most_contacts) {
             end = now;
         }
     }
+
+    // the end, largest force and losses
     o.ended = m->state[SLOT_TIME];
     o.motor_work = motion_motor_work(m, m->state);
     o.put_in += m->record.start_energy;

@@ -243,6 +243,7 @@ static void probe(soak *s)
 
 // --- the user's side -------------------------------------------------------------------
 
+// Sends a key at random.
 static void press_something(soak *s)
 {
     // all keys but those that end or suspend the lab, or hold the terminal's output
@@ -275,6 +276,8 @@ static void press_something(soak *s)
     send_text(s, keys[chance(s, sizeof keys / sizeof keys[0])]);
 }
 
+// Enters a command at random, with a random number in it: mostly by Enter, sometimes only
+// completed by Tab.
 static void give_command(soak *s)
 {
     static const char *const commands[] = {
@@ -385,8 +388,11 @@ static void do_something(soak *s)
 
 // --- a session -------------------------------------------------------------------------
 
+// Starts the lab on a pseudo-terminal of its own, in an empty folder. Without one the
+// test is skipped (status 77).
 static void start(soak *s)
 {
+    // the terminal
     s->master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
     if (s->master < 0 || grantpt(s->master) != 0 || unlockpt(s->master) != 0) {
         perror("no pseudo-terminal");
@@ -395,11 +401,15 @@ static void start(soak *s)
     s->slave = open(ptsname(s->master), O_RDWR | O_NOCTTY | O_CLOEXEC);
     tcgetattr(s->slave, &s->before);
     resize(s, 120, 40);
+
+    // the folder
     snprintf(s->folder, sizeof s->folder, "/tmp/soak-XXXXXX");
     if (s->slave < 0 || mkdtemp(s->folder) == NULL) {
         perror("no terminal or no folder");
         exit(77);
     }
+
+    // a session that cannot be opened
     char path[128];
     snprintf(path, sizeof path, "%s/broken.session", s->folder);
     FILE *broken = fopen(path, "w");
@@ -409,6 +419,8 @@ static void start(soak *s)
               broken);
         fclose(broken);
     }
+
+    // the lab, whose standard streams and controlling terminal are the slave
     s->child = fork();
     if (s->child == 0) {
         setsid();
@@ -427,6 +439,8 @@ static void start(soak *s)
         }
         _exit(127);
     }
+
+    // what it shows is read without waiting
     fcntl(s->master, F_SETFL, fcntl(s->master, F_GETFL) | O_NONBLOCK);
 }
 

@@ -195,6 +195,9 @@ static double numeric_second_rate(const arm *a, const double *q, const double *w
     return (rate[1] - rate[0]) / (2 * h);
 }
 
+// Arms of one to ten links, on both kinds of hub and all kinds of wall, in contact and
+// free, with the hub sliding either way and sticking: accelerations and reactions fulfil
+// the equations of Lagrange.
 TEST(satisfies_the_lagrangian)
 {
     static const char *const hubs[] = {"rigid", "spring"}, *const walls[] = {"point",
@@ -210,18 +213,26 @@ TEST(satisfies_the_lagrangian)
             if (a.dof == 1 && mode.contact) {
                 continue; // tested below
             }
+
+            // a state of motion, in which a hub that sticks is at rest
             double q[LARGEST], w[LARGEST], alpha[LARGEST];
             chain_link work[LARGEST];
             chain_reaction r;
             some_state(&a, choice, q, w);
-            w[0] = mode.friction == HUB_STICK ? 0 : w[0];
+            if (mode.friction == HUB_STICK) {
+                w[0] = 0;
+            }
             chain_accelerations(&a, work, q, w, mode, alpha, &r);
             check_below(largest_residual(&a, q, w, alpha, &r), 1e-7);
+
+            // friction holds the hub, or is the stiction against the motion
             if (mode.friction == HUB_STICK) {
                 check_close(alpha[0], 0, 0);
             } else {
                 check_close(r.friction, -mode.friction * a.motor.stiction, 0);
             }
+
+            // the acceleration of the gap by differences, and no force without contact
             if (wall_stands(&a.wall)) {
                 double second = numeric_second_rate(&a, q, w, alpha);
                 // differences of rates of order 10 over 2e-6 s carry rounding of order
