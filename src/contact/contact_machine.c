@@ -59,14 +59,14 @@
 #include "src/arm/impact.h"
 #include "src/contact/locate.h"
 
-// of the arm's shortest period, a flight that says nothing by itself
+// a flight shorter than this share of the arm's shortest period is a short one
 #define SHORT_FLIGHT 0.01
-#define SAME_PLACE   1e-12 // as that of the wall's face, but for rounding [m]
+#define SAME_PLACE   1e-12 // gap to a wall that is only rounding [m]
 
 // --- a face that is left ---------------------------------------------------------------
 
-// The arm leaves the face of a wall that gives, which returns by itself from now on. What
-// does so at once gives up its energy at once, if there is a damper to take it.
+// Makes the arm leave the face of a wall that gives; the face returns by itself. If it
+// returns at once, a damper takes up at once the energy that wall and face held.
 static void leave_face(const arm *a, motion *m)
 {
     double *state = m->state;
@@ -80,8 +80,8 @@ static void leave_face(const arm *a, motion *m)
     }
 }
 
-// Whether an arm on the face of a wall that gives still presses on it, after its velocity
-// or the law changed; else it leaves it.
+// Whether an arm on the face of a wall that gives still presses on the face after the
+// arm's velocity or the wall's law changed. If it does not, it leaves the face.
 static bool face_follows(const arm *a, motion *m)
 {
     const penetration at =
@@ -95,13 +95,15 @@ static bool face_follows(const arm *a, motion *m)
 
 // --- the transitions -------------------------------------------------------------------
 
-// Counts flights that are too short for arm or face to change in them. Returns whether
-// the chatter rule applies to the impact after more than MOTION_MOST_SHORT_FLIGHTS in a
-// row, which has that result with the wall's restitution e: without a rebound it would
-// lose next to nothing of what arm and face hold. A link that nothing bends has no other
-// motion than the bounces, and no period that they are short against: it always would.
+// Counts flights that are too short for arm or face to change in them, and returns
+// whether the chatter rule applies to this impact: after more than
+// MOTION_MOST_SHORT_FLIGHTS in a row, if without a rebound it loses a negligible share of
+// the energy that arm and face hold. `result` is that of the impact with the restitution
+// e. The flights of a rigid link are never short, as it has no period; its only motion is
+// the bounces.
 static bool chatters(const arm *a, motion *m, const impact_result *result, double e)
 {
+    // whether the flight that this impact ends was short
     double *state = m->state;
     double flight = state[SLOT_TIME] - state[SLOT_LAST_IMPACT];
     double fastest = a->highest_frequency;
@@ -119,6 +121,8 @@ static bool chatters(const arm *a, motion *m, const impact_result *result, doubl
     if (!(state[SLOT_SHORT_FLIGHTS] > MOTION_MOST_SHORT_FLIGHTS)) {
         return false;
     }
+
+    // the loss without a rebound is speed times impulse / 2, of the impulse for e = 0
     const state_energy own = motion_energy(a, m, state);
     const double held = own.kinetic + own.strain + motion_wall_energy(a, m, state);
     return 0.5 * result->speed * result->impulse / (1 + e) < MOTION_CHATTER_SHARE * held;
@@ -201,16 +205,12 @@ static void slip(const arm *a, motion *m)
 {
     double *state = m->state;
     if (motion_unresolved(a, m)) {
-        bool forward =
-            state[SLOT_FRICTION_TORQUE] < 0; // friction resists the way the hub goes
-        if (forward) {
+        // it slides against the friction that held it
+        if (state[SLOT_FRICTION_TORQUE] < 0) {
             state[SLOT_FRICTION] = HUB_FORWARD;
-        } else {
-            state[SLOT_FRICTION] = HUB_BACKWARD;
-        }
-        if (forward) {
             state[SLOT_FRICTION_TORQUE] = -a->motor.stiction;
         } else {
+            state[SLOT_FRICTION] = HUB_BACKWARD;
             state[SLOT_FRICTION_TORQUE] = a->motor.stiction;
         }
         state[SLOT_JUMPED] = 1;
@@ -231,8 +231,8 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
         impact(a, m, report);
         break;
     case MOTION_TOUCH:
-        contact_resolve(a, m, true,
-                        MOTION_TOUCH); // at no speed, or on a wall that gives at any
+        // without speed, or on a wall that gives at any speed
+        contact_resolve(a, m, true, MOTION_TOUCH);
         break;
     case MOTION_RELEASE:
         release_contact(a, m);
@@ -373,10 +373,14 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
     assert(after->dof == m->dof);
     const double *q = state_angles(m, m->state);
     motion_note_change(m);
+
+    // the energy that other springs hold at these angles came from outside
     m->state[SLOT_EXTERNAL_WORK] +=
         chain_strain_energy(after, q) - chain_strain_energy(before, q);
     const bool turned = after->wall.cosine != before->wall.cosine ||
                         after->wall.sine != before->wall.sine;
+
+    // a wall that was turned away from the arm ends the contact
     bool contact = m->state[SLOT_CONTACT] != 0;
     if (contact && turned && motion_gap_with(after, m) > SAME_PLACE) {
         contact = false;

@@ -27,9 +27,10 @@ void contact_check(const arm *a, const motion *m)
     (void)a, (void)friction, (void)hub_velocity, (void)contact, (void)settled;
 }
 
-// By how much the state violates the conditions of its contact state: tension in contact,
-// imminent penetration of a released touch, friction beyond its limit, sliding against
-// the chosen direction.
+// By how much an evaluated state violates the conditions of its contact state: the
+// largest of a wall that pulls, an acceleration into the wall that is just touched and
+// counts as left, friction beyond stiction, and an acceleration of a hub at rest against
+// the direction in which it is taken to slide. 0 if it violates none.
 static double violation(const arm *a, const motion *m, const double *state, bool touching,
                         bool hub_rests)
 {
@@ -40,8 +41,8 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     if (now.contact && !m->wall_gives) {
         worst = fmax(worst, -state[SLOT_FORCE]);
     } else if (touching && !m->wall_gives) {
-        // of a light face the force that moves it: its acceleration amplifies the force's
-        // rounding
+        // for a face of less than 1 kg, the force on it: its acceleration would amplify
+        // the force's rounding error
         const double mass = m->wall_has_face ? fmin(a->wall.face_mass, 1) : 1;
         worst = fmax(worst, -state[SLOT_GAP_ACCELERATION] * mass);
     }
@@ -56,7 +57,8 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     return worst;
 }
 
-// Ends a motion that is only rounding, which would say that contact or friction end.
+// Sets all velocities to zero if all of them are only rounding errors of rest. Otherwise
+// these would say that contact or friction end.
 static void end_rounding(motion *m)
 {
     double *w = state_velocities(m, m->state);
@@ -69,9 +71,10 @@ static void end_rounding(motion *m)
     }
 }
 
-// The ways of friction of a hub at rest in the order in which they are tried: what holds
-// it, or which way it slides. A hub that breaks away continues doing so where the contact
-// changes at that instant; it gives way to what friction has held.
+// The three states of friction of a hub at rest (stuck, forwards, backwards) in the order
+// in which they are tried. A stuck hub is tried first, unless the event is that it slips,
+// or it slides already while the contact changes. A hub that slips slides against the
+// friction that held it.
 static const hub_friction *friction_order(const double *state, motion_event event)
 {
     static const hub_friction orders[][3] = {{HUB_STICK, HUB_FORWARD, HUB_BACKWARD},
@@ -90,22 +93,25 @@ static const hub_friction *friction_order(const double *state, motion_event even
     return backwards ? orders[2] : orders[1];
 }
 
-// What of a violation is rounding in the states that an event leads to.
+// The violation that may be a rounding error in the states that an event leads to. After
+// a release or a slip accelerations decide, and rounding errors are amplified in these
+// (motion_rounding).
 static double rounding_after(const arm *a, const motion *m, motion_event event)
 {
-    double more = 1, beyond = 0;
+    double left_out = 1, amplified = 0;
     if (event == MOTION_RELEASE) {
-        more = larger(m->engine->left_out, 1);
+        left_out = larger(m->engine->left_out, 1);
     }
     if (event == MOTION_RELEASE || event == MOTION_SLIP) {
-        beyond = more * (motion_rounding(a, m) - 1 + motion_wall_rounding(a, m));
+        amplified = left_out * (motion_rounding(a, m) - 1 + motion_wall_rounding(a, m));
     }
-    return FORCE_TOLERANCE * (1 + beyond) + motion_face_rounding(a, m);
+    return FORCE_TOLERANCE * (1 + amplified) + motion_face_rounding(a, m);
 }
 
-// How many of the states that are tried first are taken even if rounding makes them look
-// worse, of as many choices of friction: the state that the event has ended would be
-// violated an instant later, and these are its successors.
+// How many of the states tried first are taken even if rounding makes them look worse
+// than others. They are the successors of the state that the event ends, which would be
+// violated an instant later. `choices` is the number of states of friction that are tried
+// with each state of contact.
 static int preferred_states(motion_event event, int choices)
 {
     if (event == MOTION_RELEASE || event == MOTION_TOUCH) {
@@ -122,25 +128,29 @@ static int preferred_states(motion_event event, int choices)
 
 void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
 {
+    // one link that touches a rigid wall at rest has no velocity but for rounding
     double *state = m->state;
     end_rounding(m);
     const hub_friction *at_rest = friction_order(state, event);
     if (touching && m->dof == 1 && motion_wall_is_rigid(m) && !m->wall_moves) {
-        state_velocities(m, state)[0] = 0; // but for rounding it is
+        state_velocities(m, state)[0] = 0;
     }
+
+    // the candidates: a hub at rest has three states of friction, and an arm that touches
+    // may be in contact or leave
     double hub_velocity = state_velocities(m, state)[0];
     bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
     hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
     int choices = hub_rests ? 3 : 1;
-    int ways = touching && !m->wall_gives ? 2 : 1;
+    int contacts = touching && !m->wall_gives ? 2 : 1;
 
-    // at a release the released arm is tried first, else the one in contact
+    // The first candidate that violates no condition is taken, else the least violated.
+    // At a release the free arm is tried first, else the one in contact.
     const int preferred = preferred_states(event, choices);
     const double rounding = rounding_after(a, m, event);
     double least = 0;
     contact_state best = {false, sliding}, tried = best;
-
-    for (int i = 0; i < ways * choices; i++) {
+    for (int i = 0; i < contacts * choices; i++) {
         bool second = i >= choices;
         state[SLOT_CONTACT] =
             touching && (m->wall_gives || second == (event == MOTION_RELEASE));
@@ -149,21 +159,23 @@ void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
         } else {
             state[SLOT_FRICTION] = sliding;
         }
+
+        // by how much it violates its conditions
         motion_evaluate(a, m, state);
-        double v = violation(a, m, state, touching, hub_rests);
+        const double violated = violation(a, m, state, touching, hub_rests);
         tried = contact_state_of(state);
-        if (i == 0 || v < least) {
-            least = v;
+        if (i == 0 || violated < least) {
+            least = violated;
             best = tried;
         }
         const double allowed = i < preferred ? rounding : FORCE_TOLERANCE / 1000;
-        if (v <= allowed) {
+        if (violated <= allowed) {
             best = tried;
             break;
         }
     }
 
-    // the state under it, unless the last one tried was that
+    // the state is evaluated in the one chosen, unless that was the last one tried
     state[SLOT_CONTACT] = best.contact;
     state[SLOT_FRICTION] = best.friction;
     if (motion_held_still(m)) {
@@ -176,7 +188,7 @@ void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
         memset(state_accelerations(m, state), 0, (size_t)m->dof * sizeof(double));
     }
 
-    // the implicit methods start anew from the accelerations of this instant
+    // the implicit methods start again, from the accelerations of this instant
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
     state[SLOT_JUMPED] = 1;

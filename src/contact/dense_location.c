@@ -10,8 +10,10 @@
 
 enum { MOST_CUTS = 40, MOST_ITERATIONS = 100 };
 
-// Where the cubic through both ends' values and slopes, the time over the value, is zero:
-// for a function that falls all the way; else the root of the chord.
+// A guess of where a function that falls from `lo` to `hi` is zero. Where it falls at
+// both ends, time is a function of the value: the guess is that of Hermite's cubic
+// through both ends, in which the slopes are the inverse ones. Otherwise, or where the
+// cubic leaves the interval, it is the root of the chord.
 static double guess_root(step_point lo, step_point hi)
 {
     const double fall = lo.at.value - hi.at.value, length = hi.time - lo.time;
@@ -19,6 +21,8 @@ static double guess_root(step_point lo, step_point hi)
     if (!(lo.at.slope < 0 && hi.at.slope < 0)) {
         return chord;
     }
+
+    // the cubic's values, s the fraction of the way to zero
     const double start = s * (1 - s) * (1 - s) / lo.at.slope,
                  end = s * s * (s - 1) / hi.at.slope;
     const double guess = lo.time + length * s * s * (3 - 2 * s) - fall * (start + end);
@@ -28,9 +32,9 @@ static double guess_root(step_point lo, step_point hi)
     return chord;
 }
 
-// The root of an event function that falls from `lo` to `hi`, `second` a bound on its
-// second derivative: Newton's method within the bracket, halved where that leaves it or
-// gains too little.
+// The root of an event function that is positive at `lo` and negative at `hi`; `second`
+// bounds its second derivative. Newton's method keeps a bracket around the root, and
+// halves it where a step would leave it or narrows it too slowly.
 static double root_between(const arm *a, const motion *m, event_function w, step_point lo,
                            step_point hi, double second)
 {
@@ -39,6 +43,7 @@ static double root_between(const arm *a, const motion *m, event_function w, step
     double width = to - from;
 
     for (int i = 0; i < MOST_ITERATIONS; i++) {
+        // the estimate replaces the end on its side of the root
         if (!(t > from && t < to)) {
             t = 0.5 * (from + to);
         }
@@ -49,8 +54,8 @@ static double root_between(const arm *a, const motion *m, event_function w, step
             to = t;
         }
 
-        // end where the estimate has settled, the next correction would be below the
-        // resolution of time, or the bracket has closed
+        // The end: the step, or the bracket, is below the resolution of time, or the next
+        // step would be. That is at most second step^2 / |slope|.
         double next = t - g.value / g.slope;
         const double step = fabs(next - t),
                      resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
@@ -71,15 +76,18 @@ static double root_between(const arm *a, const motion *m, event_function w, step
     return t;
 }
 
-// The first fall below zero from `lo` to `hi`, at both of which the function is known, as
-// `known` is a bound on its second derivative, or infinite; negative if there is none.
-// Intervals in which the bound on the second derivative excludes a fall are skipped;
-// those in which it excludes a rising slope have exactly one root; all others are
-// bisected. Where the function is not finite nothing is found: the state at the step's
-// end reports that.
+// The first instant from `lo` to `hi` at which an event function falls below zero;
+// negative if there is none. `known` is a bound on its second derivative there, or
+// infinite if none is known yet. With a bound B and the length h of the interval, the
+// function is nowhere less than its smaller end value minus B h^2 / 8, and the slope
+// nowhere more than that at an end plus B h / 2. So an interval can be skipped if the
+// function cannot reach zero, and has exactly one root if the function falls throughout;
+// all others are bisected, at most `cuts` times. Where the function is not finite nothing
+// is found: the state at the step's end reports that.
 static double first_zero_crossing(const arm *a, const motion *m, event_function w,
                                   step_point lo, step_point hi, int cuts, double known)
 {
+    // no root, if the bound leaves no room for one
     const double length = hi.time - lo.time;
     double second = known;
     if (!isfinite(known)) {
@@ -118,7 +126,7 @@ void dense_search_event(const arm *a, motion *m, step_end *end)
 {
     *end = (step_end){.length = end->length};
 
-    // each function that is watched, as far as the first fall so far
+    // each function that is watched, up to the earliest fall found so far
     for (event_function w = EVENT_OF_GAP; w < EVENT_FUNCTION_COUNT; w++) {
         if (!event_function_active(a, m, w) || m->engine->excludes_event(m, w)) {
             continue;
@@ -137,20 +145,21 @@ void dense_search_event(const arm *a, motion *m, step_end *end)
 
 // --- the largest force -----------------------------------------------------------------
 
+// Records the force at a point of the step as the pulse's peak if none was larger.
 static void note_force(motion *m, step_point p)
 {
     motion_note_force(m, m->state[SLOT_TIME] + p.time, p.at.value);
 }
 
-// Where the force stops growing between `lo`, where it grows, and `hi`, where it falls:
-// secants of the slope within the bracket, halved where they gain too little.
+// The point of greatest force between `lo`, where the force grows, and `hi`, where it
+// falls: the root of its slope, by false position within a bracket that every third
+// iteration halves.
 static step_point summit(const arm *a, motion *m, step_point lo, step_point hi)
 {
     step_point top = lo.at.value > hi.at.value ? lo : hi;
-
-    double resolution = 1e-9 * (hi.time - lo.time);
-
+    const double resolution = 1e-9 * (hi.time - lo.time);
     for (int i = 0; i < MOST_ITERATIONS && hi.time - lo.time > resolution; i++) {
+        // the next point
         double share = lo.at.slope / (lo.at.slope - hi.at.slope);
         if (i % 3 == 2) {
             share = 0.5;
@@ -158,11 +167,11 @@ static step_point summit(const arm *a, motion *m, step_point lo, step_point hi)
             share = fmin(fmax(share, 1e-3), 1 - 1e-3);
         }
 
-        // which side of the summit it is on
-        double time = lo.time + share * (hi.time - lo.time);
-        double last = top.time;
+        // the end if it hardly moved, else it replaces the end on its side of the summit
+        const double time = lo.time + share * (hi.time - lo.time);
+        const double moved = time - top.time;
         top = (step_point){time, motion_output(a, m, OUTPUT_FORCE, time)};
-        if (fabs(time - last) <= resolution) {
+        if (fabs(moved) <= resolution) {
             break;
         }
         if (top.at.slope > 0) {
@@ -174,10 +183,14 @@ static step_point summit(const arm *a, motion *m, step_point lo, step_point hi)
     return top;
 }
 
+// Raises the recorded peak to the largest force between `lo` and `hi`, with the bounds of
+// first_zero_crossing: an interval that cannot have a larger force than the one recorded,
+// or in which the force only grows or only falls, is skipped; others are bisected, and
+// after the last cut the summit is located.
 static void raise_peak(const arm *a, motion *m, step_point lo, step_point hi, int cuts,
                        double known)
 {
-    // no larger force is possible here, or the slope keeps its sign
+    // skipped: no larger force is possible, or the slope keeps its sign
     const double length = hi.time - lo.time;
     double second = known;
     if (!isfinite(known)) {
@@ -191,6 +204,7 @@ static void raise_peak(const arm *a, motion *m, step_point lo, step_point hi, in
         return;
     }
 
+    // short enough
     if (cuts == 0) {
         if (lo.at.slope > 0 && hi.at.slope < 0) {
             note_force(m, summit(a, m, lo, hi));

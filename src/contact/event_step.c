@@ -21,8 +21,9 @@
 // with denormal numbers, which are many times slower on some processors.
 #define FADED 1e-150
 
-// Notes what the friction of a stuck hub exceeds stiction by, beyond rounding, which only
-// a slip that was missed explains. Stepping engines may be a step late.
+// Records by how much the friction that holds a stuck hub exceeds stiction, if that is
+// more than rounding: only a slip that was missed explains it. Of stepping engines it is
+// not recorded, as these may see a slip one step late.
 static void note_hold(const arm *a, motion *m)
 {
     const double *state = m->state;
@@ -37,11 +38,12 @@ static void note_hold(const arm *a, motion *m)
     }
 }
 
-// Counts a step of this length [s].
+// Counts the time that passed [s] as so many time steps of length `step`, rounded up and
+// at least one, and records the depth at its end.
 static void count_step(motion *m, double passed, double step)
 {
     const double steps = passed / step - 1e-6;
-    const long whole = (long)steps; // rounded up, and one at least
+    const long whole = (long)steps;
     if (steps > 0) {
         m->record.steps += whole + ((double)whole < steps);
     } else {
@@ -66,9 +68,9 @@ static void accept_trial(motion *m, double step)
     }
 }
 
-// Brings a motion that dies away to rest: what has faded below the limit becomes exactly
-// zero. A faded velocity is the sign of such a motion, or of a body without one a faded
-// acceleration: what is held without a velocity has accelerations that are rounding.
+// Brings a motion that dies away to rest: all of its numbers below FADED become exactly
+// zero. A motion dies away if a body has a velocity below FADED other than zero or, at
+// velocity zero, such an acceleration.
 static void come_to_rest(motion *m)
 {
     const double *w = state_velocities(m, m->state);
@@ -88,7 +90,7 @@ static void come_to_rest(motion *m)
     }
 }
 
-// The event of a fall of that function.
+// The event that happens where an event function falls below zero.
 static motion_event event_of(const motion *m, event_function w)
 {
     static const motion_event events[EVENT_FUNCTION_COUNT] = {
@@ -130,15 +132,18 @@ static status step_to_event(const arm *a, motion *m, step_end *end)
 }
 
 // A step of a stepping engine, which locates events and peaks by further, shorter steps.
-// One that goes beyond m->record.tstop, or ends within rounding of it, is made again to
-// end there.
+// A step that goes beyond the instant m->record.tstop, or ends within rounding of it, is
+// made again to end there.
 static status tried_step(const arm *a, motion *m, double until, double step,
                          step_end *end)
 {
+    // as long as the engine makes it, and to its first event
     const double wanted = m->engine->advance(a, m, until - m->state[SLOT_TIME], step);
     const double left = m->record.tstop - m->state[SLOT_TIME];
     *end = (step_end){.length = wanted};
     status s = step_to_event(a, m, end);
+
+    // again, to tstop; an event may be as near to that as it likes
     double reached = wanted, spare = LEAST_AFTER_TSTOP * step;
     if (s == STATUS_OK) {
         reached = end->length;
@@ -153,6 +158,8 @@ static status tried_step(const arm *a, motion *m, double until, double step,
             s = step_to_event(a, m, end);
         }
     }
+
+    // the largest force on the way
     const bool touches = s == STATUS_OK && m->state[SLOT_CONTACT] != 0;
     if (touches) {
         return locate_peak(a, m, end->length);
@@ -168,9 +175,9 @@ static bool held_folded(const arm *a, motion *m)
            chain_is_folded(a, state_angles(m, m->state));
 }
 
-// Whether the step just made by a stepping engine led an arm on a rigid flat wall through
-// a fold, where every link goes from one side of across the wall to the other. Internal
-// steps of dense engines keep clear of it.
+// Whether the step just made led an arm on a rigid flat wall through a fold: every link
+// was turned through the direction across the wall, so that the cosine of its angle to
+// the wall changed its sign. The internal steps of some engines keep clear of folds.
 static bool went_through_fold(const arm *a, const motion *m)
 {
     const double *before = state_angles(m, m->trial), *now = state_angles(m, m->state);
@@ -178,18 +185,21 @@ static bool went_through_fold(const arm *a, const motion *m)
                    m->trial[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
                    a->wall.kind == WALL_PLANE && a->links > 1;
     for (int k = a->first; k < a->dof && through; k++) {
-        const double was =
+        const double cosine_before =
             inline_cos(before[k]) * a->wall.cosine + inline_sin(before[k]) * a->wall.sine;
-        const double is =
+        const double cosine_now =
             inline_cos(now[k]) * a->wall.cosine + inline_sin(now[k]) * a->wall.sine;
-        through = was * is < 0;
+        through = cosine_before * cosine_now < 0;
     }
     return through;
 }
 
-// The body of motion_examine_step, for an arm that can move on.
+// Examines the coming step of a dense engine (motion_examine_step) for an arm that can
+// move on: how far its internal step goes, up to `until` or `far` [s], and where its
+// first event is. Records peaks of force and depth on the way.
 static void examine(const arm *a, motion *m, double until, double far, double step)
 {
+    // the internal step, all of what is left of it where more is wanted
     const double now = m->state[SLOT_TIME];
     step_end end = {.length = m->engine->advance(a, m, until - now, step)};
     const bool begun = end.length > 0;
@@ -228,7 +238,8 @@ void motion_examine_step(const arm *a, motion *m, double until, double far, doub
     }
 }
 
-// The internal step of a dense engine.
+// A step of a dense engine, examined here unless it already was. *end and m->trial get
+// its end.
 static status dense_step(const arm *a, motion *m, double until, double step,
                          step_end *end)
 {
@@ -238,6 +249,9 @@ static status dense_step(const arm *a, motion *m, double until, double step,
     m->step.coming.known = false;
     *end = m->step.coming.end;
     m->step.aim = smaller(until, m->record.tstop);
+
+    // a step that could not be begun: by numbers that are not finite, or for other
+    // reasons
     if (!m->step.coming.begun) {
         double sum = 0;
         for (int i = 0; i < m->dof; i++) {
@@ -251,7 +265,8 @@ static status dense_step(const arm *a, motion *m, double until, double step,
     return motion_try_step(a, m, end->length, STATE_WHOLE);
 }
 
-// A requested instant is reached to the last bit.
+// Sets the time to the requested instant, `until` or tstop, if it is that but for
+// rounding.
 static void meet_stop(motion *m, double until)
 {
     const double stop = smaller(until, m->record.tstop);
@@ -310,6 +325,7 @@ status motion_step(const arm *a, motion *m, double until, double step,
         return s;
     }
 
+    // its end becomes the state, unless the arm is folded there
     accept_trial(m, step);
     m->step.last = end.length;
     note_hold(a, m);
@@ -320,6 +336,8 @@ status motion_step(const arm *a, motion *m, double until, double step,
         m->failure_time = m->state[SLOT_TIME];
         return STATUS_FOLDED;
     }
+
+    // the event that ends it
     if (end.any) {
         report->event = event_of(m, end.first);
     } else {

@@ -1,4 +1,4 @@
-// What a step of the stiff engine tells of itself (engine.h): its states, by the
+// The output of a step of the stiff engine (engine.h): the states within it, by the
 // polynomials through its stages, and the event functions, which say when a contact state
 // ends.
 #include <float.h>
@@ -9,14 +9,15 @@
 #include "src/contact/edge_limits.h"
 #include "src/engines/stiff/stiff_integrator.h"
 
-// Share of a power's largest value by which it may differ at a start from what the stages
-// say.
+// A power at the step's start is taken into account if it differs from the polynomial
+// through the stages by less than this share of the largest power.
 #define LITTLE 1e-2
-// Of the current, as a share of its limit.
+// Rounding error of a current at its limit, as a share of the limit.
 #define EDGE_CURRENT 1e-10
-// Shares of a function's largest coefficient: of what is rounding at a start, and of what
-// a force that presses at all stages, or a gap that is open at them, may lack there,
-// where it changes faster than the step shows.
+// Negative values that count as none at the start of a step, as shares of a function's
+// largest coefficient: those that are rounding errors, and those of a force that presses
+// at all stages, or of a gap that is open at all of them, which may change there faster
+// than the step shows.
 #define FLAT  1e-5
 #define LACKS 1e-3
 // A gap that nowhere in a step exceeds this is followed as it grows [m].
@@ -24,7 +25,7 @@
 
 // --- states ----------------------------------------------------------------------------
 
-// What numbers at the stages add up to with such weights.
+// Sum of numbers at the stages, each times its weight.
 static inline double weighted(const double *weight, const double *stages)
 {
     double sum = 0;
@@ -34,11 +35,13 @@ static inline double weighted(const double *weight, const double *stages)
     return sum;
 }
 
-// Angle, velocity and acceleration of body k at x of the step, which the weights are for.
+// Angle [rad], velocity [rad/s] and acceleration [rad/s2] of a body.
 typedef struct body_motion {
     double q, w, a;
 } body_motion;
 
+// The motion of body k at the fraction x of the step that the weights are for: the
+// polynomial of the accelerations, and that integrated once and twice from the start.
 static inline body_motion body_at(const stiff_integrator *s, int k, double x,
                                   const radau_weights *weight)
 {
@@ -50,39 +53,48 @@ static inline body_motion body_at(const stiff_integrator *s, int k, double x,
                          weighted(weight->value, stages)};
 }
 
-// What the power of a quadrature at the step's start adds there to that by the stages,
-// which have it for a whole step: the next order of the polynomial through them. Nothing
-// where the start shows a transient that they do not.
-static double start_adds(const stiff_integrator *s, int of, const radau_weights *weight)
+// What a quadrature gains within the step if its power at the step's start counts too:
+// the polynomial through start and stages is of one degree more, which changes the
+// integral within the step but not over all of it. 0 where the start differs so much from
+// the stages that it shows a transient which they do not.
+static double gain_by_start(const stiff_integrator *s, int quadrature,
+                            const radau_weights *weight)
 {
-    const double *values = s->kept + STIFF_VALUES + of * RADAU_LANES;
-    double value[RADAU_LANES], most = 0;
-    radau_values_at(0, value);
+    const double *values = s->kept + STIFF_VALUES + quadrature * RADAU_LANES;
+    double weight_at_start[RADAU_LANES], largest = 0;
+    radau_values_at(0, weight_at_start);
     for (int j = 0; j < RADAU_STAGES; j++) {
-        most = larger(fabs(values[j]), most);
+        largest = larger(fabs(values[j]), largest);
     }
-    const double more = values[RADAU_STAGES] - weighted(value, values);
-    if (fabs(more) < LITTLE * most) {
-        return s->kept[STIFF_LENGTH] * weight->start * more;
+
+    // the power at the start, less that of the polynomial through the stages
+    const double difference = values[RADAU_STAGES] - weighted(weight_at_start, values);
+    if (fabs(difference) < LITTLE * largest) {
+        return s->kept[STIFF_LENGTH] * weight->start * difference;
     }
     return 0;
 }
 
-// A quadrature there.
-static double quadrature_at(const stiff_integrator *s, int of,
+// A quadrature at the fraction of the step that the weights are for: its value at the
+// start and the integral of its power's polynomial.
+static double quadrature_at(const stiff_integrator *s, int quadrature,
                             const radau_weights *weight)
 {
-    return s->kept[STIFF_QUADRATURES + of] +
-           s->kept[STIFF_LENGTH] *
-               weighted(weight->integral, s->kept + STIFF_VALUES + of * RADAU_LANES);
+    const double *powers = s->kept + STIFF_VALUES + quadrature * RADAU_LANES;
+    return s->kept[STIFF_QUADRATURES + quadrature] +
+           s->kept[STIFF_LENGTH] * weighted(weight->integral, powers);
 }
 
-// Angles, velocities and what has added up at `time` after the step's start, evaluated.
+// The evaluated state at `time` after the step's start: angles, velocities and
+// quadratures by the polynomials, a swinging face by its own law, and what follows from
+// all of them.
 void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, double time,
                         double *state)
 {
     const double x = time / s->kept[STIFF_LENGTH];
     double *q = state_angles(m, state), *w = state_velocities(m, state);
+
+    // the polynomials
     radau_weights weight;
     radau_weights_at(x, &weight);
     for (int k = 0; k < s->step.dof; k++) {
@@ -93,9 +105,11 @@ void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, doub
     for (int i = 0; i < QUADRATURE_COUNT; i++) {
         state_quadratures(m, state)[i] = quadrature_at(s, i, &weight);
         if (m->wall_moves && i != QUADRATURE_CURRENT && i != QUADRATURE_FORCE) {
-            state_quadratures(m, state)[i] += start_adds(s, i, &weight);
+            state_quadratures(m, state)[i] += gain_by_start(s, i, &weight);
         }
     }
+
+    // the current keeps to its limit; without an inductance it is no state of its own
     if (a->motor.electric) {
         double *current = state_quadratures(m, state) + QUADRATURE_CURRENT;
         const double most = a->motor.current_limit;
@@ -106,7 +120,7 @@ void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, doub
         }
     }
 
-    // what follows from them
+    // a face that swings by itself
     state[SLOT_TIME] = s->kept[STIFF_TIME] + (time > DBL_MIN ? time : 0);
     const wall_face start = {s->kept[STIFF_FACE], s->kept[STIFF_FACE + 1]};
     const wall_model wall = wall_at(&a->wall, s->kept[STIFF_TIME]);
@@ -117,11 +131,15 @@ void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, doub
         state[SLOT_FACE] = face.position;
         state[SLOT_FACE_VELOCITY] = face.velocity;
     }
+
+    // accelerations, force and gap
     motion_evaluate(a, m, state);
     if (state[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m)) {
         motion_project(a, m, state);
     }
-    if (swings) { // what a face left alone loses
+
+    // the energy ledger: losses of the face, work of the motor, losses of friction
+    if (swings) {
         const double work = wall_face_work(&wall, start, time);
         state_quadratures(m, state)[QUADRATURE_PUSHED] += work;
         state_quadratures(m, state)[QUADRATURE_WALL] +=
@@ -135,20 +153,22 @@ void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, doub
            (size_t)m->dof * sizeof(double));
 }
 
-// What sensors see of the state at `time` after the step's start, as the stages have it
-// and not evaluated.
+// Sets what sensors see of the state at `time` after the step's start: the motions of
+// hub, first and last link, the force and its integral. All are read from the polynomials
+// without evaluating the state, which is faster.
 static void sense_within(const stiff_integrator *s, const arm *a, const motion *m,
                          double time, double *state)
 {
     const double x = time / s->kept[STIFF_LENGTH];
-    const int seen[] = {0, a->first, a->dof - 1};
+    const int bodies[] = {0, a->first, a->dof - 1};
     radau_weights weight;
     radau_weights_at(x, &weight);
-    for (int i = 0; i < (int)(sizeof seen / sizeof *seen); i++) {
-        const body_motion at = body_at(s, seen[i], x, &weight);
-        state_angles(m, state)[seen[i]] = at.q;
-        state_velocities(m, state)[seen[i]] = at.w;
-        state_accelerations(m, state)[seen[i]] = at.a;
+    for (int i = 0; i < (int)(sizeof bodies / sizeof *bodies); i++) {
+        const int k = bodies[i];
+        const body_motion at = body_at(s, k, x, &weight);
+        state_angles(m, state)[k] = at.q;
+        state_velocities(m, state)[k] = at.w;
+        state_accelerations(m, state)[k] = at.a;
     }
     state[SLOT_FORCE] = function_at(&s->force, x).value;
     state_quadratures(m, state)[QUADRATURE_FORCE] =
@@ -169,6 +189,8 @@ status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
         sense_within(s, a, m, time - s->kept[STIFF_TIME], m->trial);
         return STATUS_OK;
     }
+
+    // the state at the step's end is known already
     const bool whole = s->used + h >= s->kept[KEPT_LENGTH];
     const double used = whole ? s->kept[KEPT_LENGTH] : time - s->kept[STIFF_TIME];
     if (whole && s->ended) {
@@ -177,6 +199,8 @@ status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
     } else {
         stiff_state_within(s, a, m, used, m->trial);
     }
+
+    // the state keeps the step, and how much of it is used
     memcpy(kept, s->kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
     kept[KEPT_CHANGED] = state_kept(m, m->state)[KEPT_CHANGED];
     kept[KEPT_INTERVAL] = state_kept(m, m->state)[KEPT_INTERVAL];
@@ -186,6 +210,7 @@ status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
 
 // --- what the contact machine asks -----------------------------------------------------
 
+// A function of the fraction of the step, with its slope by time [1/s].
 static value_and_slope by_time(const stiff_integrator *s, value_and_slope g)
 {
     return (value_and_slope){g.value, g.slope / s->step.length};
@@ -277,7 +302,9 @@ void stiff_first_event(const arm *a, motion *m, step_end *end)
 
 // --- event functions -------------------------------------------------------------------
 
-// The function less what is only rounding at its start (edge_limits.h).
+// Takes the zero out of an event function that starts at zero just after an event: each
+// of its first terms that is within `limits` is rounding, and the function is divided by
+// time for each of them (edge_limits.h). The sign of the rest is that of the function.
 static void deflate_event_root(stiff_integrator *s, event_function w,
                                const double limits[3])
 {
@@ -289,9 +316,9 @@ static void deflate_event_root(stiff_integrator *s, event_function w,
         s->divided[w] = true;
     }
 
-    // of one that starts flatter still, what is left at the start is rounding; of a force
-    // that presses at all stages, or a gap that is open at all of them, the step's own
-    // error, too
+    // A negative value that is left at the start is the step's own error if the force
+    // presses at all stages, or the gap is open at all of them. If three terms were taken
+    // out, it is rounding.
     double *start = s->function[w].b;
     bool holds =
         (w == EVENT_OF_FORCE && powers > 0) || (w == EVENT_OF_GAP && powers == 3);
@@ -315,12 +342,12 @@ static void deflate_event_root(stiff_integrator *s, event_function w,
     }
 }
 
-// Of an arm in contact with a wall that gives: its depth, and of Hunt and Crossley's law,
-// for the force itself, the factor k + c v of the power. Of Kelvin and Voigt's the force
-// with its own slope at the start, which decides whether the arm stays.
+// Sets the event functions of an arm in contact with a wall that gives. One is the depth.
+// The other is, for Kelvin and Voigt's law, the force; it gets its exact slope at the
+// start, which decides whether the arm stays. For Hunt and Crossley's law, whose force is
+// (k + c v) times a power of the depth, it is the factor k + c v.
 static void set_compliant_functions(stiff_integrator *s, const arm *a, const motion *m)
 {
-    double law[RADAU_LANES];
     s->function[EVENT_OF_GAP] = s->gap;
     function_scale(&s->function[EVENT_OF_GAP], -1, 0);
     if (a->wall.law == WALL_KELVIN_VOIGT) {
@@ -330,22 +357,31 @@ static void set_compliant_functions(stiff_integrator *s, const arm *a, const mot
                                 s->step.length * grows);
         return;
     }
+
+    // the factor of Hunt and Crossley's law
+    double factor[RADAU_LANES];
     for (int i = 0; i < RADAU_LANES; i++) {
-        law[i] = a->wall.stiffness - a->wall.damping * s->step.rate.at[i];
+        factor[i] = a->wall.stiffness - a->wall.damping * s->step.rate.at[i];
     }
-    function_through(&s->function[EVENT_OF_FORCE], law);
+    function_through(&s->function[EVENT_OF_FORCE], factor);
 }
 
-// The gap, from its rates, its acceleration at the start and where it starts [m].
+// Makes the polynomial of the gap to the wall's face: the integral of the one through its
+// rates at the stages, with the acceleration at the start, from the value at the start.
 static void set_gap(stiff_integrator *s, const arm *a, const motion *m)
 {
     const double h = s->step.length;
+
+    // where it starts: at zero just after an event; in a flight too low to be told from
+    // rounding, where the step before ended
     double start = m->state[SLOT_GAP], rates[RADAU_LANES];
     const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
     const bool jumped = m->state[SLOT_JUMPED] != 0;
     if ((jumped && fabs(start) <= EDGE_GAP) || (!jumped && s->kept[STIFF_GAP] != 0)) {
         start = jumped ? 0 : s->kept[STIFF_GAP];
     }
+
+    // the arm's rate, and that of a face that swings
     for (int i = 0; i < RADAU_LANES; i++) {
         rates[i] = s->step.rate.at[i];
         if (state_face_swings(m, m->state)) {
@@ -356,6 +392,8 @@ static void set_gap(stiff_integrator *s, const arm *a, const motion *m)
     function_through_rising(&s->gap, rates, h * m->state[SLOT_GAP_ACCELERATION]);
     function_integrate(&s->gap, start, h);
     memcpy(s->kept + STIFF_GAPS, s->gap.b, sizeof s->gap.b);
+
+    // the end of a low flight is kept for the next step
     const double end = s->gap.b[s->gap.degree];
     if (function_greatest(&s->gap) < LOW_FLIGHT) {
         s->kept[STIFF_GAP] = end;
@@ -364,7 +402,8 @@ static void set_gap(stiff_integrator *s, const arm *a, const motion *m)
     }
 }
 
-// A gap or depth that is less than places are known to all through the step says nothing.
+// Makes a gap or depth zero if throughout the step it is within the rounding error of a
+// place, as its sign then says nothing.
 static void ignore_rounding(stiff_function *f)
 {
     if (function_least(f) > -EDGE_PLACE && function_greatest(f) < EDGE_PLACE) {
@@ -372,6 +411,8 @@ static void ignore_rounding(stiff_function *f)
     }
 }
 
+// Sets the event functions of the wall: the force, which ends contact, and the gap (or
+// depth), which begins it. Just after an event their zeros at the start are taken out.
 static void set_wall_functions(stiff_integrator *s, const arm *a, const motion *m,
                                contact_state now)
 {
@@ -408,17 +449,22 @@ static void set_wall_functions(stiff_integrator *s, const arm *a, const motion *
     }
 }
 
+// Sets the event function of the hub's friction: of a sliding hub its velocity in the
+// direction in which it slides, of a stuck one what is left up to stiction, in both
+// directions.
 static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m,
                               contact_state now)
 {
     const bool jumped = m->state[SLOT_JUMPED] != 0;
+
+    // a sliding hub, whose velocity may start at zero just after an event
     if (now.friction != HUB_STICK) {
         double rate[RADAU_LANES];
         for (int i = 0; i < RADAU_LANES; i++) {
             rate[i] = now.friction * s->step.stage[0].w[i / 4][i % 4];
         }
         function_through(&s->function[EVENT_OF_HUB], rate);
-        if (jumped) { // it may start at zero
+        if (jumped) {
             const double limits[] = {0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE};
             function_through_rising(&s->function[EVENT_OF_HUB], rate,
                                     now.friction * s->step.length * s->step.a0[0]);
@@ -427,7 +473,8 @@ static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m
         return;
     }
 
-    // the nearer limit of what friction holds, and the farther one
+    // a stuck hub: how far the held torque is from the limit that is nearer at the start,
+    // and from the farther one in the other direction
     stiff_function *near = &s->function[EVENT_OF_STICTION];
     function_through(near, s->step.hold.at);
     const double sign = near->b[0] < 0 ? 1 : -1;
@@ -435,6 +482,8 @@ static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m
     *far = *near;
     function_scale(near, sign, a->motor.stiction);
     function_scale(far, -sign, a->motor.stiction);
+
+    // a torque that starts at the limit is raised above its rounding
     if (jumped && fabs(near->b[0]) <= EDGE_VALUE) {
         s->stiction_excess = EDGE_VALUE - near->b[0];
     } else {
@@ -443,10 +492,15 @@ static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m
     function_scale(near, 1, s->stiction_excess);
 }
 
+// Sets the event function of a drive whose current is limited: how far the current is
+// from its limits or, while it is limited, how far the current that the voltage would
+// drive is beyond the limit.
 static void set_current_function(stiff_integrator *s, const arm *a)
 {
     const motor_model *motor = &a->motor;
     const double most = motor->current_limit, side = s->step.limited < 0 ? -1 : 1;
+
+    // from the nearer limit, and from the farther one on the other side
     double current[RADAU_LANES];
     for (int i = 0; i < RADAU_LANES; i++) {
         current[i] = side * s->step.current.at[i];
@@ -456,6 +510,8 @@ static void set_current_function(stiff_integrator *s, const arm *a)
     s->far[EVENT_OF_CURRENT] = *near;
     function_scale(&s->far[EVENT_OF_CURRENT], 1, most);
     function_scale(near, -1, most);
+
+    // at the limit, the current by voltage and back EMF
     if (s->step.drive == STIFF_LIMITED) {
         for (int i = 0; i < RADAU_LANES; i++) {
             const double w = s->step.stage[0].w[i / 4][i % 4];
@@ -465,6 +521,9 @@ static void set_current_function(stiff_integrator *s, const arm *a)
         function_through(near, current);
         function_scale(near, 1, -most);
     }
+
+    // just after a change of the drive's equation it starts at zero, which is taken out;
+    // a current that leaves its limit does so without a slope
     if (s->turned) {
         near->b[0] = 0;
     }
@@ -472,7 +531,7 @@ static void set_current_function(stiff_integrator *s, const arm *a)
     const double rate = motor->inductance > 0 ? motor->resistance / motor->inductance : 0;
     const double edge[] = {rounding, rounding * rate, 0};
     deflate_event_root(s, EVENT_OF_CURRENT, edge);
-    if (s->turned) { // a current that leaves its limit does so without a slope
+    if (s->turned) {
         near->b[0] = fabs(near->b[0]);
     }
 }
