@@ -11,8 +11,9 @@
 #include "src/arm/modes.h"
 #include "src/base/sincos.h"
 
-// What a decay counts against a vibration: it dies within a step or two and need not be
-// followed, so that steps may be several times longer.
+// Weight of a decay's rate against a frequency, where steps are chosen: a decay is over
+// within a step or two and need not be followed, so that steps may be several times
+// longer.
 #define DECAY_WEIGHT 0.125
 
 void arm_set_voltage(arm *a, double volts)
@@ -21,15 +22,15 @@ void arm_set_voltage(arm *a, double volts)
     motor_set_voltage(&a->motor, volts);
 }
 
-// First frequency of the straight chain clamped at the hub, from inverse iteration on M x
-// = (1/w^2) K x: bending moments of the inertia forces, summed twice, give the next
-// shape. Uniform rods: force on node and moment per unit acceleration of link k, see
-// chain.h. The clamp holds the first link, or the root where that bends, too: of a beam,
-// and of a link that has no other joint.
+// First frequency of the straight chain clamped at the hub [rad/s], by inverse iteration
+// on M x = (1/w^2) K x: the bending moments of the inertia forces of a shape x, divided
+// by the joints' stiffnesses and summed up, are the next shape. The links are uniform
+// rods (chain.h). The clamp holds the first link; but in a beam whose root bends, or an
+// arm of one link, it holds the root.
 static double first_clamped_frequency(const arm *a)
 {
-    // the angles of a quadratic deflection are a fair first shape; Rayleigh's quotient
-    // after one smoothing sweep is right to second order in the error of the shape
+    // The first shape has the angles of a quadratic deflection. The error of Rayleigh's
+    // quotient is the square of that of the shape, so that few sweeps are enough.
     enum { LONGEST = 1024, SWEEPS = 6 };
     const bool root = a->root_bends || a->links == 1;
     double shape[LONGEST], next[LONGEST], frequency = 0;
@@ -85,9 +86,10 @@ static double first_clamped_frequency(const arm *a)
     return frequency;
 }
 
-// Largest eigenvalue of M^-1 K of the straight, free chain or, of velocities, of M^-1 C,
-// by power iteration through the contact-free sweeps: the square of a frequency or a
-// decay.
+// Largest eigenvalue of the straight, free chain, by power iteration: of M^-1 K, the
+// square of a frequency, or if `of_velocities` of M^-1 C, a decay. The product with such
+// a matrix is minus the accelerations that chain_accelerations gives for small angles, or
+// for small velocities, without other forces.
 static double largest_eigenvalue(const arm *source, bool of_velocities)
 {
     enum { LONGEST = PARAMETER_LINKS_MOST + 1, SWEEPS = 60 };
@@ -110,7 +112,7 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     double x[LONGEST], still[LONGEST], alpha[LONGEST], value = 0;
     const double small = 1e-6; // small angles: the linear range
 
-    // a shape near the fastest mode's, then sweep after sweep until the quotient stands
+    // from angles of alternating sign, as in the fastest mode, until the value settles
     memset(still, 0, sizeof still);
     for (int k = 0; k < a.dof; k++) {
         const double sign = k % 2 == 0 ? 1 : -1;
@@ -125,6 +127,8 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
             w = x;
         }
         chain_accelerations(&a, work, q, w, free_mode, alpha, &reaction);
+
+        // by how much the matrix lengthens the vector
         double before = 0;
         for (int k = 0; k < a.dof; k++) {
             size += alpha[k] * alpha[k];
@@ -147,8 +151,8 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     return value;
 }
 
-// The same of two links on a rigid hub, whose one spring has K = k b b' with b = (-1, 1):
-// k b' M^-1 b.
+// Largest eigenvalue of M^-1 K of two links on a rigid hub. Their one spring has
+// K = k b b^T with b = (-1, 1), so that it is k b^T M^-1 b.
 static double one_spring_eigenvalue(const arm *a)
 {
     const pair_mass m = pair_mass_of(a);
@@ -165,15 +169,18 @@ static double highest_frequency(const arm *a)
     return 1.05 * sqrt(largest_eigenvalue(a, false));
 }
 
-// How fast the linear motion can be, for choosing steps: modes vibrate at w; overdamped
-// ones, since stiffness-proportional damping has zeta grow with w, decay at w (zeta +
-// sqrt(zeta^2 - 1)); so does the hub alone.
+// The fastest decay of the linear motion [1/s], for choosing steps: the largest of those
+// of an overdamped mode, of air drag, of damped modes, of the current and of the hub that
+// the motor brakes. The damping ratio z of a mode of frequency w grows with w, as damping
+// is proportional to stiffness; if z > 1, the mode decays at w (z + sqrt(z^2 - 1)).
 static double fastest_decay(const arm *a)
 {
     double w = a->highest_frequency,
            stiffest = fmax(a->joint_stiffness, a->hub_stiffness);
     double damping = fmax(a->joint_damping, a->hub_joint_damping);
     const double ratio = 0.5 * w * damping / stiffest;
+
+    // overdamped modes, and the least inertia that the hub can show
     double decay = 0, reach = 0;
     if (ratio > 1) {
         decay = w * (ratio + sqrt(ratio * ratio - 1));
@@ -183,6 +190,8 @@ static double fastest_decay(const arm *a)
     }
     double hub = a->hub_inertia + arm_link_of(a, 0).mass * reach * reach / 12;
     assert(stiffest > 0 && hub > 0);
+
+    // drag and damped modes
     decay = fmax(decay, a->amount.air_drag * a->link_length / a->link_mass);
     if (a->damped_modes > 0) {
         decay = fmax(decay, 1.05 * largest_eigenvalue(a, true));
@@ -200,8 +209,8 @@ static double fastest_decay(const arm *a)
     return fmax(decay, braking / hub);
 }
 
-// Links and joints one by one, where lists make them differ; equal ones are a chain like
-// any other.
+// Sets links and joints one by one, if the parameters list lengths or stiffnesses. A list
+// of equal numbers gives an even chain.
 static void set_links(arm *a, const arm_parameters *p)
 {
     double lengths[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST];
@@ -219,7 +228,8 @@ static void set_links(arm *a, const arm_parameters *p)
         a->each[k] = (arm_link){l, mass, mass * l * l / 12, stiffness[k], 0};
     }
 
-    // as it stands in the list; of different ones the largest says how long steps may be
+    // the stiffness of equal joints as the list has it; of different ones the largest,
+    // which limits how long steps may be
     if (a->links > 1) {
         a->joint_stiffness = stiffness[a->links - 1];
     }

@@ -22,6 +22,8 @@ typedef struct tip_contact {
     double lever, vx, vy;
 } tip_contact;
 
+// Computes that geometry: sums place and velocity of the last link's base, and meets the
+// wall there.
 static tip_contact contact_of(const arm *a, const double *q, const double *w)
 {
     const int last = a->dof - 1;
@@ -79,13 +81,14 @@ bool chain_is_folded(const arm *a, const double *q)
     return folded;
 }
 
-// response = M^-1 of the generalised force of a force -(ex, ey) at the tip and a moment
-// -lever on the last link. The same two sweeps as chain_accelerations', without
-// velocities and springs.
+// Computes the jumps of the velocities, response[dof], by an impulse -(ex, ey) at the tip
+// and an angular impulse -lever on the last link: M^-1 times their generalised force, by
+// the two sweeps of chain_accelerations (chain.h) without velocities and springs.
 static void unit_response(const arm *a, chain_link *link, const double *q, double ex,
                           double ey, double lever, bool hub_locked, double *response)
 {
-    // tip to hub: each link's answer if its base rested
+    // tip to hub: `unit` is each link's jump if its base rested; p is the mass, and f the
+    // impulse, that the links from it on show to the link before
     double pxx = a->tip_mass, pxy = 0, pyy = a->tip_mass, fx = ex, fy = ey;
     for (int k = a->links - 1; k >= 0; k--) {
         const arm_link own = arm_link_of(a, k);
@@ -111,9 +114,10 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
         pyy += m - uy * uy / d;
     }
 
-    // hub to tip: less what its base takes along
+    // hub to tip: less what the jump (bx, by) of its base takes off; a hub behind a
+    // spring does not feel an impulse
     double bx = 0, by = 0;
-    response[0] = 0; // a hub behind a spring does not feel an impulse
+    response[0] = 0;
     for (int k = 0; k < a->links; k++) {
         double jump = link[k].unit - (link[k].ux * bx + link[k].uy * by) * link[k].inv_d;
         bx -= arm_link_of(a, k).length * link[k].s * jump;

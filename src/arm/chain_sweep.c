@@ -8,8 +8,8 @@
 #include "src/arm/forces.h"
 #include "src/base/sincos.h"
 
-// Sizes of the forces on the shapes of modal damping into sizes[damped_modes]; joint k
-// gets the torque modal_damping[i][k] times that. Returns the power lost [W].
+// Computes the forces of modal damping, sizes[damped_modes]: mode i brings the torque
+// modal_damping[i][k] sizes[i] to joint k. Returns the power lost [W].
 static double shape_sizes(const arm *a, const double *w, double *sizes)
 {
     double lost = 0;
@@ -25,7 +25,7 @@ static double shape_sizes(const arm *a, const double *w, double *sizes)
     return lost;
 }
 
-// What a sweep is of.
+// The arm, state and forces of one evaluation of the accelerations.
 typedef struct sweep {
     const arm *a;
     chain_link *link;
@@ -45,8 +45,8 @@ typedef struct sweep {
     double damping_power, wall_power; // lost [W]
 } sweep;
 
-// Directions of the links, place and velocity of the last one's base, and how the wall
-// meets it.
+// Computes the directions of the links, the place and velocity of the last link's base,
+// and how the wall meets that link.
 KERNEL void reach_wall(sweep *c)
 {
     const arm *a = c->a;
@@ -81,8 +81,9 @@ KERNEL double tip_vy(const sweep *c)
     return c->vy + c->l_last * c->link[last].c * c->omega[last];
 }
 
-// What a wall that is touched answers to place and velocity; of one whose face has a mass
-// that of the spring behind it.
+// Computes the forces of a wall in contact by depth, rate and slip: the normal force of a
+// wall that gives or, if its face has a mass, of the spring behind the face; and the
+// force along the wall.
 KERNEL void press_wall(sweep *c)
 {
     const wall_model *model = &c->a->wall;
@@ -107,7 +108,8 @@ KERNEL void press_wall(sweep *c)
     c->wall_power = f.lost;
 }
 
-// The links from one on to the tip, whose accelerations have been eliminated.
+// What the links beyond a joint, up to the tip, show to the link before it, once their
+// accelerations have been eliminated (chain.h).
 typedef struct beyond {
     double pxx, pxy, pyy;        // P: mass that they show
     double qx, qy;               // Q of velocity and springs
@@ -117,7 +119,7 @@ typedef struct beyond {
     double end_x, end_y;         // velocity of the next link's end
 } beyond;
 
-// Forces on link k.
+// Forces on link k of length l by its motion; moves b->end to the next link's end.
 KERNEL link_force forces_on_link(sweep *c, const force_constants *constants, int k,
                                  double l, beyond *b)
 {
@@ -147,7 +149,11 @@ KERNEL double joint_torque(sweep *c, const force_constants *constants, int k, do
     return f.torque + of_shapes;
 }
 
-// Eliminates the acceleration of link k.
+// Eliminates the acceleration of link k, tip to hub (chain.h): its balance of moments
+// gives it as that of a base at rest, `free` and for a unit contact force `unit`, less
+// (ux, uy) / d times the acceleration of the base. *b becomes what link k and those
+// beyond show to link k - 1. Here t = (-s, c) and r = (c, s) are the directions across
+// and along the link.
 KERNEL void eliminate(sweep *c, int k, beyond *b)
 {
     const arm *a = c->a;
@@ -160,6 +166,8 @@ KERNEL void eliminate(sweep *c, int k, beyond *b)
     const double prx = b->pxx * cosine + b->pxy * sine; // P r
     const double pry = b->pxy * cosine + b->pyy * sine;
     const double ux = -m * half * sine + l * ptx, uy = m * half * cosine + l * pty;
+
+    // inertia about the base, with that of what lies beyond
     const double fx = b->qx - l * w2 * prx, fy = b->qy - l * w2 * pry;
     double d =
         arm_link_of(a, k).inertia + m * half * half + l * l * (cosine * pty - sine * ptx);
@@ -192,10 +200,12 @@ KERNEL void eliminate(sweep *c, int k, beyond *b)
             moment = moment2 = 0; // a stuck hub has no acceleration
         }
     }
+
+    // the accelerations of a base at rest
     const double inv_d = 1 / d, free = moment * inv_d, unit = moment2 * inv_d;
     c->link[k] = (chain_link){cosine, sine, inv_d, ux, uy, free, unit};
 
-    // what it and those beyond show to the one before
+    // what the link and those beyond show to the one before
     if (root) {
         return;
     }
@@ -215,7 +225,8 @@ typedef struct tip_base {
     double ax, ay, bx, by;
 } tip_base;
 
-// From hub to tip: the links' accelerations, into link[].unit those of a unit force.
+// Computes the links' accelerations without a contact force, from hub to tip, into
+// out[links], and those by a unit contact force into link[].unit.
 KERNEL tip_base substitute(const sweep *c, double *out)
 {
     double ax = 0, ay = 0, bx = 0, by = 0;
@@ -241,8 +252,11 @@ KERNEL tip_base substitute(const sweep *c, double *out)
     return (tip_base){ax, ay, bx, by};
 }
 
-// The force that d2g/dt2 = 0 gives, or what a face with a mass needs to go along, and
-// what it makes of the accelerations; reactions of the wall.
+// Computes the contact force, adds its accelerations to out[links] and sets the wall's
+// part of the reactions. On a rigid wall the force follows from d2g/dt2 = 0: with `rate2`
+// the depth's second derivative without the force and `yields` its change by a unit
+// force, it is -rate2 / yields. A face of mass m on a spring that holds back by H has to
+// move along: f = m (rate2 + f yields) + H.
 KERNEL void close_wall(const sweep *c, tip_base base, double *out,
                        chain_reaction *reaction)
 {
@@ -257,7 +271,8 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out,
         at->ex * base.ax + at->ey * base.ay + last * out[N - 1] + at->convective;
     double force = c->pressed;
 
-    // the mass of a face feels the acceleration in space
+    // a moving wall accelerates the depth, but the mass of a face feels the acceleration
+    // in space
     if (!c->face) {
         rate2 += comes_faster;
     }
@@ -281,6 +296,7 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out,
         rate2 += comes_faster;
     }
 
+    // force, powers and gap
     reaction->force = force;
     reaction->wall_work = -c->along * wall_slides(model, at->ex, at->ey);
     if (c->face) {
@@ -295,8 +311,8 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out,
         -(wall_penetration_rate(at, c->vx, c->vy, last, c->omega[N - 1]) + comes);
 }
 
-// Forces at the hub at its velocity [rad/s] and, where the current is a state of its own,
-// at that [A].
+// Forces at the hub at its velocity w [rad/s]; `state` is the current [A] where that is a
+// state of its own.
 KERNEL hub_force forces_at_hub(const arm *a, double w, double state)
 {
     double current = 0;
@@ -308,8 +324,8 @@ KERNEL hub_force forces_at_hub(const arm *a, double w, double state)
     return f;
 }
 
-// What the tip shows to the last link: its mass, the wall, and the forces on what it
-// carries.
+// What the tip shows to the last link: the mass that it carries, the forces of the wall,
+// and the forces on that mass.
 KERNEL beyond beyond_tip(const sweep *c)
 {
     const arm *a = c->a;

@@ -7,15 +7,15 @@
 
 // A face that swings less than this is at rest [m].
 #define FACE_AT_REST 1e-15
-// One without a mass that is left behind by less [m], or returns within less [s], has not
-// been.
+// A face without a mass that is left behind by less than this [m], or that returns within
+// less than this [s], is at rest at once.
 #define LEAST_DEPTH  1e-12
 #define LEAST_RETURN 1e-14
 // A bounce slower than this counts as no bounce [m/s]: half of it is what the engines
 // take for rounding of a rate just after an impact (EDGE_RATE in edge_limits.h).
 #define LEAST_REBOUND 2e-9
-// Below this square of a phase or decay sine and its kin are their series, to the last
-// bit.
+// Below this square of a phase, circular and hyperbolic sine and cosine are given by the
+// first terms of their series, to the last bit.
 #define SMALL_SQUARE 1e-4
 
 void wall_init(wall_model *w, const parameters *p)
@@ -56,8 +56,10 @@ double wall_stored_energy(const wall_model *w, double depth)
 double wall_rate(const wall_model *w, double compliance, double depth, double rate)
 {
     assert(compliance > 0);
-    // without its damper the wall stops the mass at the deepest point, and so does a
-    // damper that grows with the depth without the wall's spring
+
+    // The greatest depth, at which the wall is stiffest: at most that at which the spring
+    // alone stops the mass 1 / compliance, and that at which the damper alone stops it,
+    // if it grows with the depth.
     const double n = w->exponent, inward = fmax(rate, 0);
     const double energy =
         0.5 * inward * inward / compliance + wall_stored_energy(w, depth);
@@ -68,6 +70,8 @@ double wall_rate(const wall_model *w, double compliance, double depth, double ra
             plain_pow(plain_pow(fmax(depth, 0), n + 1) + way, 1 / (n + 1));
         deepest = fmin(deepest, held);
     }
+
+    // the tangents of spring and damper there, and the faster of their two rates
     double stiffness = w->stiffness, damping = w->damping;
     if (n != 1) {
         stiffness = n * w->stiffness * plain_pow(deepest, n - 1);
@@ -80,8 +84,9 @@ double wall_rate(const wall_model *w, double compliance, double depth, double ra
 
 // --- a face left alone -----------------------------------------------------------------
 
-// How long a face without a mass takes from a depth [m] to its place at rest [s], by a
-// factor of e nearer to it for Kelvin-Voigt's wall.
+// How long a face without a mass takes to return from a depth [m] to its place at rest
+// [s]; on Kelvin and Voigt's wall, which it approaches exponentially, the time in which
+// its distance falls by a factor of e.
 static double return_time(const wall_model *w, double depth)
 {
     const double time = w->damping / w->stiffness;
@@ -91,7 +96,8 @@ static double return_time(const wall_model *w, double depth)
     return time * depth;
 }
 
-// Such a face on its way back, or at rest where it is next to its place.
+// A face without a mass that returns from a depth [m]; at rest if that is at most
+// `least`.
 static wall_face returning(const wall_model *w, double depth, double least)
 {
     if (depth > least) {
@@ -123,13 +129,14 @@ double wall_face_energy(const wall_model *w, wall_face face)
            wall_stored_energy(w, fabs(face.position));
 }
 
-// --- one that its foundation shakes ----------------------------------------------------
+// --- a face that its foundation shakes -------------------------------------------------
 
-// The series of wall_motion.h and of what follows from it are this long; at a phase of
-// one their rest is less than a last bit.
+// The number of terms of all series in this section: at a phase of one, what they leave
+// out is less than the last bit.
 enum { TERMS = 20 };
 
-// The series of what shakes it from the instant of the wall on. False where nothing does.
+// Gets the series of the foundation's acceleration from the instant of the wall on. False
+// if it does not move.
 static bool is_shaken(const wall_model *w, double *series)
 {
     return wall_is_shaken(w) &&
@@ -146,8 +153,8 @@ static void find_decays(const wall_model *w, double *slow, double *fast)
     *slow = square / *fast;
 }
 
-// Of y' + fast y = u'', the solution without a transient, as a series: y = (u'' -
-// y')/fast.
+// Series of the solution without a transient of y' + fast y = u'', u'' being the
+// foundation's acceleration: from the last term down by y = (u'' - y') / fast.
 static void quiet_series(const double *shakes, double fast, double *y)
 {
     y[TERMS - 1] = shakes[TERMS - 1] / fast;
@@ -156,8 +163,9 @@ static void quiet_series(const double *shakes, double fast, double *y)
     }
 }
 
-// The series of the face's place. By the equation of motion; or where its fast decay is
-// over and far faster than all that happens, by x' + slow x = y with y as above.
+// Computes the series x of the face's place by its equation of motion. If the face
+// `creeps`, its fast decay is over and much faster than all else: the series then follows
+// from x' + slow x = y, with y of quiet_series.
 static void face_series(const wall_model *w, const double *shakes, bool creeps,
                         wall_face face, double *x)
 {
@@ -180,7 +188,7 @@ static void face_series(const wall_model *w, const double *shakes, bool creeps,
     }
 }
 
-// The sum of a series at h, and its slope.
+// The value of a series at h, and its slope, by Horner's scheme.
 static wall_face sum_up(const double *x, double h)
 {
     wall_face at = {x[TERMS - 1], 0};
@@ -191,7 +199,8 @@ static wall_face sum_up(const double *x, double h)
     return at;
 }
 
-// The integral of (k x + c x') u' from 0 to h, whose factors are series.
+// The work of the foundation on the face from 0 to h: the integral of (k x + c x') u',
+// both factors as series in t / h, whose product is integrated term by term.
 static double work_by(const wall_model *w, double velocity, const double *shakes,
                       const double *x, double h)
 {
@@ -215,7 +224,9 @@ static double work_by(const wall_model *w, double velocity, const double *shakes
     return sum * h;
 }
 
-// A shaken face h later, and what is done on it, in pieces over which the series hold.
+// A shaken face a time h later, and in *work the work of its foundation meanwhile. The
+// time is divided into pieces over which the series converge; if these were too many, the
+// face creeps, and only its slow decay limits them.
 static wall_face shake(const wall_model *w, wall_face face, double h, double *work)
 {
     enum { MOST_PIECES = 64 };
@@ -224,6 +235,8 @@ static wall_face shake(const wall_model *w, wall_face face, double h, double *wo
     const bool creeps = h * (swings + shakes) > MOST_PIECES;
     double slow, fast, series[TERMS], x[TERMS];
     find_decays(w, &slow, &fast);
+
+    // piece after piece
     const double fastest = creeps ? slow : swings;
     const int pieces = 1 + (int)(h * (fastest + shakes));
     *work = 0;
@@ -255,6 +268,8 @@ double wall_face_work(const wall_model *w, wall_face face, double h)
 wall_face wall_face_after(const wall_model *w, wall_face face, double h)
 {
     assert(h >= 0);
+
+    // a face without a mass: linearly, or exponentially
     if (!wall_has_face(w)) {
         double passed = 0;
         if (face.position > 0) {
@@ -266,6 +281,8 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
         }
         return returning(w, face.position * left, FACE_AT_REST);
     }
+
+    // one that is shaken
     double series[TERMS], work;
     if (is_shaken(w, series)) {
         return shake(w, face, h, &work);
@@ -275,8 +292,7 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
     const double turn = square - d * d, s = sqrt(fabs(turn)), phase = turn * h * h;
     double c, sine;
 
-    // cosine and sine over s with their decay; hyperbolic ones by the slower of their two
-    // decays
+    // C and S: by their series, by circular functions, or by two decays
     if (fabs(phase) < SMALL_SQUARE) {
         const double decay = plain_exp(-d * h);
         c = decay * (1 - phase / 2 * (1 - phase / 12 * (1 - phase / 30)));
@@ -293,7 +309,7 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
         sine = (slow - fast) / (2 * s);
     }
 
-    // what is left when it has died away is rounding
+    // a swing that has died away is at rest
     wall_face after = {face.position * c + (face.velocity + d * face.position) * sine,
                        face.velocity * c -
                            (d * face.velocity + square * face.position) * sine};
@@ -308,6 +324,8 @@ double wall_face_rate(const wall_model *w, wall_face face)
 {
     double series[TERMS], quiet[TERMS] = {0};
     const bool shaken = is_shaken(w, series);
+
+    // at rest, or without a mass
     if (face.position == 0 && face.velocity == 0 && !shaken) {
         return 0;
     }
@@ -317,13 +335,15 @@ double wall_face_rate(const wall_model *w, wall_face face)
         }
         return 0;
     }
+
+    // a face that swings
     const double square = w->stiffness / w->face_mass,
                  d = w->damping / (2 * w->face_mass);
     if (d * d <= square) {
         return sqrt(square);
     }
 
-    // creeping back at the slow decay, once what belongs to the fast one has died away
+    // one that creeps back: at the slow decay, once the part of the fast decay is over
     double slow, fast;
     find_decays(w, &slow, &fast);
     if (shaken) {

@@ -24,9 +24,9 @@ wall_motion wall_motion_of(const wall_parameters *p)
 
 // --- a table ---------------------------------------------------------------------------
 
-// The rates m of the cubic spline through the rows with slope 0 at both ends. Its
-// acceleration is continuous at each row between if, with h the intervals and d the
-// slopes of the chords,
+// Computes the rates m, at the rows, of the cubic spline through them that has slope 0 at
+// both ends. Its acceleration is continuous at the rows between if, with h the intervals
+// and d the slopes of the chords,
 //
 //     h_i m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_(i-1) m_(i+1) = 3 (h_i d_(i-1) + h_(i-1)
 //     d_i)
@@ -52,7 +52,7 @@ static void find_rates(wall_path *p, double *scratch)
     }
 }
 
-// Whether the times of the rows rise; a sentence in f where they do not.
+// Checks that the times of the rows rise; otherwise f says at which line they do not.
 static status check_times(const wall_path *p, const csv_table *table, const char *file,
                           fault *f)
 {
@@ -128,9 +128,8 @@ void wall_path_destroy(wall_path *p)
     }
 }
 
-// The row that begins the interval of an instant of the table's own time; an instant next
-// to a row belongs to the interval that it begins. -1 before the first, rows - 1 from the
-// last on.
+// The last row that is not after an instant of the table's own time, by bisection; a row
+// that is after it only by rounding counts, too. -1 before the first row.
 static long interval_of(const wall_path *p, double time)
 {
     long low = -1, high = (long)p->rows;
@@ -145,7 +144,8 @@ static long interval_of(const wall_path *p, double time)
     return low;
 }
 
-// Hermite's cubic between two rows.
+// Place, velocity and acceleration of a wall whose motion is a table, at an instant of
+// the table's time: Hermite's cubic between two rows, and at rest before and after them.
 static wall_shift path_at(const wall_path *p, double time)
 {
     const long i = interval_of(p, time), last = (long)p->rows - 1;
@@ -225,7 +225,7 @@ bool wall_motion_series(const wall_motion *m, double time, int count, double *te
         return true;
     }
     if (m->kind == MOTION_FILE && wall_motion_rate(m, time) > 0) {
-        // a straight line from row to row
+        // the acceleration of a cubic is a straight line
         const long i = interval_of(m->path, since);
         const double h = m->path->times[i + 1] - m->path->times[i];
         const double rise = m->path->places[i + 1] - m->path->places[i];
@@ -240,7 +240,7 @@ bool wall_motion_series(const wall_motion *m, double time, int count, double *te
 double wall_motion_rate(const wall_motion *m, double time)
 {
     if (m->kind == MOTION_FILE) {
-        // a share of an interval
+        // one over the interval between two rows
         long i = -1;
         if (m->path != NULL) {
             i = interval_of(m->path, time - m->time);

@@ -9,13 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The fastest decay of the two-link series [1/s]: so cheap are they that half a million
-// steps take a third of a second.
+// Arms with a faster decay than this are not computed by two-link series [1/s], whose
+// steps it shortens. These are cheap: half a million steps take a third of a second.
 #define FASTEST_OF_PAIR 2e6
 
-// The event method's engine: series of two equal links, hub joint and damping of any
-// kind, on a rigid wall that is a point, a plane or none; the stiff engine for all
-// others. It does not depend on the time step.
+// The engine of the event method, whatever the time step: the two-link series for two
+// equal links with any hub joint and damping and a rigid wall or none, the stiff engine
+// for all other arms.
 static const engine *event_engine(const arm *a)
 {
     if (motion_suits_pair(a)) {
@@ -29,6 +29,8 @@ bool motion_suits_pair(const arm *a)
     return features_suit_pair(a->features) && a->fastest_decay <= FASTEST_OF_PAIR;
 }
 
+// Sets what a motion knows of its arm and chooses its engine: `chosen` if that is not
+// NULL, else by the method.
 static void choose_engine(const arm *a, motion *m, const method_parameters *method,
                           const engine *chosen)
 {
@@ -90,9 +92,10 @@ static void lay_out_motion(const arm *a, motion *m, layout *l)
     }
 }
 
-// A zeroed block, in *block, for what a function lays out, from its first whole cache
-// line on; false if out of memory. Pages of a large one are the system's until they are
-// touched: of many links most never are.
+// Allocates a zeroed block for what the function lay_out lays out in it, which begins at
+// the block's first whole cache line. False if out of memory. With calloc the pages of a
+// large block take no memory until they are touched, which with many links most never
+// are.
 static bool open_block(const arm *a, motion *m,
                        void (*lay_out)(const arm *a, motion *m, layout *l), void **block)
 {
@@ -118,13 +121,13 @@ static bool open_engine(const arm *a, motion *m)
     return opened;
 }
 
-// Numbers in a state of an engine.
+// How many numbers a state of this arm has with an engine.
 static int size_of_states(const arm *a, const motion *m, const engine *e)
 {
     return m->head_size + e->kept + e->kept_for_body * a->dof;
 }
 
-// The same of the engine that has the most of those that a changed arm may get.
+// The largest such number among the engines that a changed arm may get.
 static int most_size(const arm *a, const motion *m)
 {
     const bool stays = motion_is_implicit(m) || m->chosen;

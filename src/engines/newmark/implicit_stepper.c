@@ -35,7 +35,8 @@
 // is left is below 1e-12.
 #define NEWTON_TOLERANCE 1e-8
 
-// Velocities onto J w = 0 in contact.
+// Projects the velocities w onto the constraint J w = 0 of contact: the nearest ones in
+// the metric of the kinetic energy.
 static void project_velocity(const arm *a, motion *m, const double *q, double *w,
                              bool stuck)
 {
@@ -47,7 +48,8 @@ static void project_velocity(const arm *a, motion *m, const double *q, double *w
     }
 }
 
-// Accelerations and velocities that belong to the trial's angles; a stuck hub has none.
+// Computes the accelerations and velocities that belong to the trial state's angles by
+// (3.6), (3.7) and the alpha rule above; those of a stuck hub are zero.
 static void update_rates(motion *m, const implicit_coefficients *k, double h, bool stuck)
 {
     const double *q1 = state_angles(m, m->trial);
@@ -116,14 +118,12 @@ static status solve_step(const arm *a, motion *m, double h,
     return STATUS_NEWTON_FAILED;
 }
 
-// The state at the end of a step that does not resolve the fastest mode: what the step's
-// own balance gave.
+// Completes the trial state of a step that does not resolve the fastest mode: force and
+// friction are those of the step's own balance, which Newton's iteration found.
 static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
 {
     double *trial = m->trial, *q = state_angles(m, trial),
            *w = state_velocities(m, trial);
-    const penetration at = chain_penetration(a, q, w);
-    double power = 0;
 
     // the impulse of an impact within the step is not part of the force's impulse
     double impulsive = m->state[SLOT_IMPULSE] / (trial[SLOT_TIME] - m->state[SLOT_TIME]);
@@ -136,6 +136,8 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
         trial[SLOT_FORCE] = fmax(it->force - impulsive, 0);
     }
 
+    // friction, and the gap
+    const penetration at = chain_penetration(a, q, w);
     if (it->stuck) {
         trial[SLOT_FRICTION_TORQUE] = -it->excess;
     } else {
@@ -147,6 +149,7 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
 
     // powers that the quadratures integrate
     trial[SLOT_VISCOUS_POWER] = a->motor.damping * w[0] * w[0];
+    double power = 0;
     for (int k = 1; k < a->dof; k++) {
         const force_constants joint = force_constants_of(a, k - a->first);
         power += joint_forces(&joint, &a->amount, 0, w[k] - w[k - 1]).lost;
@@ -154,10 +157,12 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
     trial[SLOT_DAMPING_POWER] = power;
 }
 
-// Removes the drift of the constraint by bending the arm: angles c x (2 - x) with x from
-// 0 at the hub to 1 at the tip, like a beam under a load at its tip.
+// Removes the drift of the constraint by bending the arm: changes the angles by
+// c x (2 - x), x from 0 at the hub to 1 at the tip, as a load at its tip bends a beam.
+// The factor c is found by Newton's method.
 static void bend_to_wall(const arm *a, motion *m)
 {
+    // the shape for c = 1, in which a hub does not turn
     double *q = state_angles(m, m->trial), *shape = m->scratch;
     for (int k = 0; k < a->dof; k++) {
         double x = a->links > 1 ? (double)(k - a->first) / (a->links - 1) : 1;
@@ -168,7 +173,7 @@ static void bend_to_wall(const arm *a, motion *m)
         }
     }
 
-    // the gap depends on it almost linearly: twice is enough
+    // the gap depends on c almost linearly: two iterations are enough
     for (int i = 0; i < 2; i++) {
         const double g = chain_penetration(a, q, q).depth;
         const double along = chain_penetration_rate(a, q, shape);
@@ -195,9 +200,11 @@ static bool makes_energy(const arm *a, const motion *m)
     return gained > fmax(a->motor.torque * turned, 0) + 1e-3 * energy[0] + 1e-9;
 }
 
-static status step(const arm *a, motion *m, double h, state_extent extent)
+// Computes the trial state at the end of a step of length h: solves the step's equations,
+// then evaluates the state, or completes it where the step does not resolve all modes.
+static status implicit_step(const arm *a, motion *m, double h, state_extent extent)
 {
-    (void)extent;
+    (void)extent; // always the whole state
     const contact_state mode = contact_state_of(m->state);
     const bool resolved = !motion_unresolved(a, m);
 
@@ -215,8 +222,8 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
                            .sliding = -mode.friction * a->motor.stiction};
     TRY(solve_step(a, m, h, &k, &it));
 
-    // onto the constraint, with the force evaluated anew where the step resolves all
-    // modes
+    // where the step resolves all modes: velocities onto the constraint, then force and
+    // accelerations from the equations of motion
     if (it.contact && resolved) {
         project_velocity(a, m, state_angles(m, m->trial), state_velocities(m, m->trial),
                          it.stuck);
@@ -243,7 +250,7 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
     return STATUS_OK;
 }
 
-// A time step, or what remains.
+// The length of the step: a whole time step, or what remains if that is less.
 static double implicit_advance(const arm *a, motion *m, double remaining,
                                double step_length)
 {
@@ -260,11 +267,11 @@ static size_t implicit_init(const arm *a, void *memory)
     return (size_t)a->links * sizeof(implicit_sweep);
 }
 
-// The same step with other coefficients.
+// The two engines differ only in the coefficients of a motion (motion.implicit).
 #define STEPPER(title)                                                                   \
     {                                                                                    \
         .name = (title), .init = implicit_init, .advance = implicit_advance,             \
-        .state_at = step, .implicit = true                                               \
+        .state_at = implicit_step, .implicit = true                                      \
     }
 const engine newmark_engine = STEPPER("Newmark");
 const engine generalized_alpha_engine = STEPPER("generalised-alpha");

@@ -32,7 +32,8 @@
 
 // --- a step ----------------------------------------------------------------------------
 
-// From angles q and velocities w on.
+// Writes the numbers that the series need into the block of a lane: arm, wall and motor,
+// and a motion that starts from the angles q and velocities w.
 static void put_inputs(const arm *a, const motion *m, const double *q, const double *w,
                        double wanted, double *block)
 {
@@ -63,22 +64,22 @@ static void put_inputs(const arm *a, const motion *m, const double *q, const dou
     block[AT_START_VELOCITY + 2] = w[a->first + 1];
     block[AT_WANTED] = wanted;
 
-    // none where nothing has jumped
+    // rounding of the hub's rate just after an event; -1 for none
     block[AT_EDGE_RATE] = -1;
     if (state_kept(m, m->state)[KEPT_JUMPED] != 0) {
         block[AT_EDGE_RATE] = EDGE_RATE * motion_rounding_at(a, m->dof, q, w);
     }
 }
 
-// The length that is tried from velocities w on, up to `most`.
+// The length for which a series is computed from velocities w on [s], up to `most`: as
+// far as the fastest mode, the rotation and the fastest decay let the highest order
+// reach.
 static double wanted_step(const arm *a, const double *w, double most)
 {
-    // as far as the fastest mode, the rotation and the fastest decay let the highest
-    // order reach
     const double first = w[a->first], second = w[a->first + 1];
     const double links = larger(fabs(first), fabs(second));
-    const double turning =
-        larger(fabs(second - first), fabs(w[0])); // the bend turns, too
+    // the bend between the links turns, too, and so does the hub
+    const double turning = larger(fabs(second - first), fabs(w[0]));
     const double rate =
         larger(1.2 * larger(links, turning), larger(a->highest_frequency, 1e-3));
     const double wanted = smaller(most, LONGEST_REACH / rate);
@@ -88,8 +89,8 @@ static double wanted_step(const arm *a, const double *w, double most)
     return wanted;
 }
 
-// Records in the state the step that begins there, at most `most` [s] long.
-static void keep(motion *m, double most)
+// Records in the state the internal step that begins there, at most `most` [s] long.
+static void keep_step_start(motion *m, double most)
 {
     double *kept = state_kept(m, m->state);
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
@@ -117,8 +118,8 @@ static void prepare_series(const arm *a, motion *m)
                       .damped = a->joint_damping > 0 || a->hub_joint_damping > 0};
 }
 
-// Whether the state's step continues: to the end of what remains, or, where it was not
-// made for less than that, to its own.
+// Whether the internal step that the state keeps continues: if it reaches to the end of
+// what remains, or if its own length is no more than what remains.
 static bool continues_step(motion *m, double remaining)
 {
     const double *kept = state_kept(m, m->state);
@@ -127,9 +128,10 @@ static bool continues_step(motion *m, double remaining)
            (left >= remaining || length <= remaining);
 }
 
-// How long a new step is to be at most: what remains, or twice the step that has been
-// used up since where nothing has changed but the instant to go to. Just after a change
-// no more than twice the time since the change before, as the next may come as soon.
+// The greatest length of a new internal step [s]. It is what remains or, where nothing
+// has changed but the instant to go to, twice the step before if that is more. Just after
+// a change it is at most twice the time since the change before, as the next one may come
+// as soon.
 static double longest_step(motion *m, double remaining)
 {
     const double *kept = state_kept(m, m->state);
@@ -144,7 +146,8 @@ static double longest_step(motion *m, double remaining)
     return remaining;
 }
 
-// Continues in the state's step, whose series may be to be computed again.
+// Continues in the internal step that the state keeps. Its series are computed again if
+// the engine's memory holds those of another step.
 static void resume_taylor_step(const arm *a, motion *m)
 {
     taylor_integrator *s = m->memory;
@@ -162,10 +165,10 @@ static void resume_taylor_step(const arm *a, motion *m)
     s->own = true;
 }
 
-// The length of the step whose series are computed: what they allow, but on a flat wall
-// clear of the fold over the hub's axis. There the force has a pole that does not show in
-// the velocities: the velocities' series pass it with small terms, while the force's
-// series diverge.
+// The length of the step whose series are computed [s]: what the series allow but, on a
+// flat wall, clear of the fold over the hub's axis. There the contact force has a pole
+// that the velocities do not show: their series pass it with small terms, while that of
+// the force diverges.
 static double length_of_step(const arm *a, const taylor_lane *lane)
 {
     const double allowed = lane->block[AT_ALLOWED];
@@ -173,8 +176,8 @@ static double length_of_step(const arm *a, const taylor_lane *lane)
         return allowed;
     }
 
-    // how far the first link turns at most: in contact both stand as far from across the
-    // wall
+    // a bound on how far the first link turns, by its series; in contact both links are
+    // at the same angle from the direction across the wall
     const double *q = taylor_term(lane, AT_ANGLE_1);
     const int spacing = taylor_spacing(lane);
     double turn = 0;
@@ -182,7 +185,7 @@ static double length_of_step(const arm *a, const taylor_lane *lane)
         turn = (turn + fabs(q[n * spacing])) * allowed;
     }
 
-    // a share of the length takes no more than that share of the turn
+    // shortened in proportion, as in a share of the length it turns by at most that share
     double sine, cosine;
     inline_sincos(*q, &sine, &cosine);
     const double left = fabs(cosine * a->wall.cosine + sine * a->wall.sine);
@@ -192,6 +195,9 @@ static double length_of_step(const arm *a, const taylor_lane *lane)
     return allowed;
 }
 
+// Continues the internal step or begins a new one; returns how far the motion can go in
+// it [s], at most `remaining`. Series that taylor_lanes.c computed in a group are taken
+// over.
 static double taylor_advance(const arm *a, motion *m, double remaining, double step)
 {
     taylor_integrator *s = m->memory;
@@ -201,14 +207,14 @@ static double taylor_advance(const arm *a, motion *m, double remaining, double s
         resume_taylor_step(a, m);
     } else {
         if (!s->ready) {
-            keep(m, longest_step(m, remaining));
+            keep_step_start(m, longest_step(m, remaining));
             prepare_series(a, m);
             taylor_compute_one(&s->lane);
         }
         kept[KEPT_LENGTH] = length_of_step(a, &s->lane);
         s->known = 0;
 
-        // series of a group that are to be gone on with
+        // series of a group are copied if the motion stops within the step and goes on
         const double way = smaller(m->record.tstop - m->state[SLOT_TIME], remaining);
         s->own = s->lane.group == NULL || kept[KEPT_LENGTH] > way;
         if (s->own && s->lane.group != NULL) {
@@ -216,6 +222,7 @@ static double taylor_advance(const arm *a, motion *m, double remaining, double s
         }
     }
 
+    // the step is in hand, and the state keeps it
     s->ready = false;
     m->step.history_invalid = false;
     m->most_force = s->lane.block[AT_FORCE_MOST];
@@ -224,7 +231,7 @@ static double taylor_advance(const arm *a, motion *m, double remaining, double s
     return smaller(kept[KEPT_LENGTH] - s->used, remaining);
 }
 
-// No step is known yet.
+// Begins without any step, if there is memory; returns the bytes that the engine needs.
 static size_t taylor_init(const arm *a, void *memory)
 {
     taylor_integrator *s = memory;
@@ -242,7 +249,7 @@ taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
         continues_step(m, remaining)) {
         return NULL;
     }
-    keep(m, longest_step(m, remaining));
+    keep_step_start(m, longest_step(m, remaining));
     prepare_series(a, m);
     s->ready = true;
     return &s->lane;

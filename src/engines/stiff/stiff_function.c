@@ -5,9 +5,9 @@
 
 #include "src/base/extremes.h"
 
-// A slope that differs from the polynomial's by more than so many times what the function
-// changes in the step is that of a transient which is over before the first stage, or
-// rounding.
+// A slope at the start is ignored if it differs from the polynomial's by more than this
+// many times the function's change in the step: it is then rounding, or belongs to a
+// transient that ends before the first stage.
 #define STEEP 10
 
 void function_through(stiff_function *f, const double *nodes)
@@ -37,6 +37,9 @@ void function_through_rising(stiff_function *f, const double *nodes, double slop
     stiff_function through;
     function_through(&through, nodes);
     const int n = through.degree;
+
+    // the difference between the slope wanted and that of the polynomial through the
+    // nodes
     double rise = 0;
     for (int i = 0; i < RADAU_STAGES; i++) {
         rise = larger(fabs(nodes[i] - nodes[RADAU_LANES - 1]), rise);
@@ -45,6 +48,8 @@ void function_through_rising(stiff_function *f, const double *nodes, double slop
     if (!(fabs(more) <= STEEP * rise)) {
         more = 0;
     }
+
+    // raised by one degree, plus the polynomial that is zero at all nodes and has slope 1
     f->degree = n + 1;
     for (int i = 0; i <= n + 1; i++) {
         const double share = (double)i / (n + 1);
@@ -56,6 +61,7 @@ void function_through_rising(stiff_function *f, const double *nodes, double slop
 
 void function_integrate(stiff_function *f, double start, double factor)
 {
+    // coefficients of an integral are the sums of those before, over the new degree
     const int n = ++f->degree;
     double sum = start;
     for (int i = 0; i <= n; i++) {
@@ -93,7 +99,7 @@ void function_start(const stiff_function *f, double powers[4])
 
 value_and_slope function_at(const stiff_function *f, double x)
 {
-    // de Casteljau
+    // de Casteljau's algorithm; its last step but one has value and slope
     double b[FUNCTION_MOST];
     const int n = f->degree;
     const double y = 1 - x;
@@ -108,13 +114,14 @@ value_and_slope function_at(const stiff_function *f, double x)
 
 double function_curvature(const stiff_function *f, double from, double to)
 {
-    // the second derivative's coefficients, those of the part: first cut at its end, then
-    // its start
+    // the coefficients of the second derivative are the second differences
     double b[FUNCTION_MOST];
     const int n = f->degree - 2;
     for (int i = 0; i <= n; i++) {
         b[i] = (f->b[i + 2] - f->b[i + 1]) - (f->b[i + 1] - f->b[i]);
     }
+
+    // those of its part between `from` and `to`: cut at the end, then at the start
     for (int k = 0; k < n && to < 1; k++) {
         for (int i = n; i > k; i--) {
             b[i] = (1 - to) * b[i - 1] + to * b[i];
@@ -126,6 +133,8 @@ double function_curvature(const stiff_function *f, double from, double to)
             b[i] = (1 - share) * b[i] + share * b[i + 1];
         }
     }
+
+    // a polynomial is nowhere larger than its largest coefficient
     double most = 0;
     for (int i = 0; i <= n; i++) {
         most = larger(fabs(b[i]), most);

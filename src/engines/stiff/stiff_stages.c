@@ -7,20 +7,23 @@
 #include "src/engines/stiff/stiff_integrator.h"
 
 #define NEWTON_SHARE 3e-3 // of the tolerance, what the iteration leaves
-// in lengths of a step, to where its polynomials are extrapolated
+// polynomials of the step before are extrapolated up to so many of its lengths
 #define FARTHEST    2
-#define LEAST_RATE  1e-4 // of the iteration that is believed
-#define SLOW_RATE   0.6  // and from which on a shorter step is cheaper
-#define LEAST_SHARE 1e-14
-#define LAST_DIGITS 1e-14 // of an angle, as corrections that do not converge show them
-#define MOST_LEFT   30    // times what is wanted, of such corrections
-#define ANGLE_RATE  20    // that makes an angle's error one of velocity [1/s]
+#define LEAST_RATE  1e-4  // least rate of convergence that is believed
+#define SLOW_RATE   0.6   // rate of convergence from which a shorter step is cheaper
+#define LEAST_SHARE 1e-14 // of the scale, a correction that is only rounding
+#define LAST_DIGITS 1e-14 // rounding of angles, which corrections cannot go below
+#define MOST_LEFT   30    // times the wanted size, the largest such correction accepted
+#define ANGLE_RATE  20    // turns an angle's error into one of a velocity [1/s]
 
 enum { MOST_ITERATIONS = 12 };
 
 // --- the arm ---------------------------------------------------------------------------
 
-// Whether the drive's current is held at its limit, and which way.
+// Chooses the equation of an electric drive at the step's start: the current is held at
+// its limit if the voltage would drive it beyond that; else it flows through an
+// inductance or, without one, follows the voltage at once. `w` and `acceleration` are the
+// hub's.
 static void choose_drive(stiff_step *s, const motor_model *m, double current, double w,
                          double acceleration)
 {
@@ -39,7 +42,7 @@ static void choose_drive(stiff_step *s, const motor_model *m, double current, do
         return;
     }
 
-    // where the voltage would drive it beyond, or is about to
+    // limited where the voltage would drive the current beyond, or is about to
     const double beyond = side * wanted - limit,
                  grows = -side * m->back_emf * acceleration;
     const bool off_limit = fabs(beyond) > rounding * limit;
@@ -120,8 +123,9 @@ void stiff_set_start(stiff_integrator *integrator, motion *m)
 
 // --- Newton ----------------------------------------------------------------------------
 
-// How much the accelerations of the step before say of those at each stage, as its
-// polynomial has them at `offset` + `ratio` c of its length.
+// Weights by which the accelerations at the stages j of the step before predict those at
+// the stages i of this one: the former's polynomial at offset + ratio c_i of its length.
+// `offset` is where in that step this one starts, `ratio` that of their lengths.
 static void weights_of_last_step(double offset, double ratio,
                                  double weight[RADAU_STAGES][RADAU_LANES])
 {
@@ -134,7 +138,8 @@ static void weights_of_last_step(double offset, double ratio,
     }
 }
 
-// Where a wall that moves is at the stages and, in the last lane, at the start.
+// Sets the shift and velocity of a wall that moves, at the stages and (in the last lane)
+// at the step's start.
 static void place_wall(stiff_step *s)
 {
     for (int i = 0; i < RADAU_LANES; i++) {
@@ -151,6 +156,7 @@ static void place_wall(stiff_step *s)
 bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
                         double ratio, double *rate)
 {
+    // the prediction: without weights only the velocities at the start
     stiff_step *s = &integrator->step;
     _Alignas(32) double weight[RADAU_STAGES][RADAU_LANES] = {{0}};
     if (!fresh) {
@@ -162,7 +168,7 @@ bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
     integrator->loops->predict(s, stiff_accelerations(integrator),
                                stiff_force(integrator), weight[0]);
 
-    // with the tangent at the first iterate
+    // simplified Newton iterations, all with the tangent at the prediction
     const double scale = integrator->kept[STIFF_SCALE];
     const double wanted = NEWTON_SHARE * integrator->tolerance * scale;
     double before = 0;
@@ -178,7 +184,8 @@ bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
             return false;
         }
 
-        // the first correction is judged by the rate of the step before
+        // What is left after corrections that shrink by theta each is a geometric series.
+        // The first correction is judged by the rate of the step before.
         double theta = *rate, left = now * theta;
         if (i > 0) {
             theta = now / before;
@@ -190,7 +197,7 @@ bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
             return true;
         }
 
-        // slow where it is as near as the angles' last digits let it come
+        // slow convergence: enough where the rest is the rounding of the angles
         if (i > 1 && theta > SLOW_RATE) {
             const double rounding =
                 LAST_DIGITS * stiff_momentum(integrator, s->q0) / s->length;
@@ -213,8 +220,8 @@ void stiff_keep_stages(stiff_integrator *integrator)
         memcpy(a + (size_t)RADAU_LANES * (size_t)k, s->stage[k].a, sizeof s->stage[k].a);
     }
 
-    // what holds one link, or two whose hub is stuck, holds them to the last bit, and
-    // presses with one force throughout unless the current changes
+    // One link on a rigid wall, or two whose hub is stuck, are held to the last bit: they
+    // have no accelerations, and the same force throughout unless the current changes.
     const bool rigid = s->contact == STIFF_RIGID && !wall_moves(s->wall);
     const bool one = rigid && s->dof == 1, both = rigid && s->dof == 2 && s->stuck;
     if (one || both) {
@@ -228,8 +235,8 @@ void stiff_keep_stages(stiff_integrator *integrator)
 
 // --- the error -------------------------------------------------------------------------
 
-// As RADAU5 estimates it: what the embedded formula of order 7 has more than the stages,
-// filtered by the real system.
+// The error is estimated as RADAU5 does it: by the difference between the embedded
+// formula of order 7 and the stages, filtered by the real system.
 
 double stiff_momentum(const stiff_integrator *integrator, const double *w)
 {
@@ -253,11 +260,13 @@ static inline double real_row_product(const stiff_step *s, const double *row,
     return sum;
 }
 
-// (M + ...) v + gamma D x, gamma being 1/g of the real system, into `out`.
+// Computes out = M v + gamma D x over all bodies: M the mass matrix, D the matrix of all
+// damping, and gamma = 1/g of the real system. fx and fy [links] are scratch, the forces
+// on the links.
 static void inertia_and_damping(stiff_step *s, double gamma, const double *v,
                                 const double *x, double *out, double *fx, double *fy)
 {
-    // outwards
+    // from hub to tip: a sums v, b sums x over the links, as places of their ends
     double ax = 0, ay = 0, bx = 0, by = 0;
     for (int k = 0; k < s->links; k++) {
         const stiff_pivot *p = &s->pivot[k];
@@ -269,7 +278,8 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v,
         bx -= p->ls * b, by += p->lc * b;
     }
 
-    // inwards, from what the tip carries and what slips along the wall with it
+    // from tip to hub: the sum of forces, which begins with that of the tip's mass and of
+    // friction along the wall
     const double slip = gamma * s->slip_damping * (s->along_x * bx + s->along_y * by);
     double tx = s->tip_mass * ax + slip * s->along_x;
     double ty = s->tip_mass * ay + slip * s->along_y, outer = 0;
@@ -287,7 +297,7 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v,
         outer = inner;
     }
 
-    // the hub, and the borders
+    // the hub, and the damped modes
     if (s->first > 0) {
         out[0] = -outer;
     }
@@ -303,10 +313,12 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v,
     }
 }
 
-// y of a right side, in place, by the real system without its borders:
-// solve_unbordered of stiff_kernel.c for its first lane.
+// Solves the real system without its borders (damped modes, contact), in place: y is the
+// right side before and the solution after. The same as solve_unbordered of
+// stiff_kernel.c for the first lane only.
 static void real_solve_unbordered(const stiff_step *s, double *y)
 {
+    // elimination from tip to hub
     double fx = 0, fy = 0, t = 0;
     for (int k = s->links - 1; k >= 0; k--) {
         const stiff_pivot *p = &s->pivot[k];
@@ -319,6 +331,8 @@ static void real_solve_unbordered(const stiff_step *s, double *y)
     if (s->first > 0) {
         y[0] = (y[0] - t) * s->hub_inverse.r[0];
     }
+
+    // substitution from hub to tip
     double ax = 0, ay = 0, before = y[0];
     for (int k = 0; k < s->links; k++) {
         const stiff_pivot *p = &s->pivot[k];
@@ -333,15 +347,16 @@ static void real_solve_unbordered(const stiff_step *s, double *y)
     }
 }
 
-// The same with the borders, the contact's equation having `target` added to its right
-// side.
+// Solves the real system with its borders, in place; `target` is the right side of the
+// contact's equation.
 static void real_solve_bordered(const stiff_step *s, double target, double *y)
 {
     real_solve_unbordered(s, y);
     const int count = stiff_borders(s);
     double z[STIFF_BORDERS];
 
-    // right sides of the borders' equations, and their unknowns
+    // the borders' own small system: its right side, forwards and back through its
+    // factors
     for (int i = 0; i < count; i++) {
         const double sum = real_row_product(s, stiff_border_row(s, i), y);
         if (i < s->modes) {
@@ -362,7 +377,7 @@ static void real_solve_bordered(const stiff_step *s, double target, double *y)
         z[i] *= s->corner[i][i].r[0];
     }
 
-    // what they make of the bodies
+    // the borders' unknowns act on the bodies
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < s->dof; k++) {
             y[k] += z[i] * s->border[i][k].r[0];
@@ -370,8 +385,9 @@ static void real_solve_bordered(const stiff_step *s, double target, double *y)
     }
 }
 
-// What the embedded formula adds to a course, `start` being its own part, over the whole
-// step.
+// The difference between the embedded formula and the stages for the integral over the
+// step of a quantity with these values at the stages; `start` is radau_start times its
+// value at the step's start.
 static double quadrature_error(const stiff_step *s, double start,
                                const stiff_nodes *values)
 {
@@ -382,7 +398,8 @@ static double quadrature_error(const stiff_step *s, double start,
     return s->length * sum;
 }
 
-// Moment of inertia of the arm stretched out, and its length.
+// Moment of inertia of the stretched arm about the hub [kg m2], with each link's mass at
+// its end, and into *reach the arm's length [m].
 static double stretched_inertia(const stiff_step *s, double *reach)
 {
     double inertia = s->hub_inertia;
@@ -394,8 +411,9 @@ static double stretched_inertia(const stiff_step *s, double *reach)
     return inertia;
 }
 
-// The error of a current that flows through an inductance, as the momentum that its
-// torque gives the arm while an angle's error counts as one of velocity.
+// The error of a current that flows through an inductance, as a momentum: that which its
+// torque would give the stretched arm in the time 1 / ANGLE_RATE. It is filtered like the
+// other errors, by 1 + R / (L gamma).
 static double current_error(const stiff_step *s, double gamma, bool twice)
 {
     const motor_model *m = s->motor;
@@ -410,7 +428,7 @@ static double current_error(const stiff_step *s, double gamma, bool twice)
            (ANGLE_RATE * sqrt(stretched_inertia(s, &reach)));
 }
 
-// That of what the wall gives the arm, as the force's polynomial has it.
+// The error of the contact force's impulse, as a momentum of the stretched arm.
 static double impulse_error(const stiff_step *s)
 {
     double reach;
@@ -419,8 +437,9 @@ static double impulse_error(const stiff_step *s)
            sqrt(inertia);
 }
 
-// Filters errors of angles and velocities by the real system, in place: e - g J e is what
-// they are.
+// Filters the errors of angles x and velocities w by the real system, in place: solves
+// (1 - g J) e = (x, w) for e, J being the tangent of the equations of motion and
+// g = 1 / gamma.
 static void filter(stiff_integrator *integrator, double gamma, double *x, double *w)
 {
     stiff_step *s = &integrator->step;
@@ -431,7 +450,7 @@ static void filter(stiff_integrator *integrator, double gamma, double *x, double
     inertia_and_damping(s, gamma, w, x, y, integrator->scratch[3],
                         integrator->scratch[3] + s->links);
 
-    // with the wall
+    // the contact's equation
     double target = 0;
     if (s->contact != STIFF_FREE) {
         const double along_x = real_row_product(s, s->jacobian, x),
@@ -460,12 +479,14 @@ double stiff_error(stiff_integrator *integrator, bool twice)
         x[k] *= h;
         w[k] *= h;
     }
+
+    // filtered once, or again to take out decays that end within the step
     filter(integrator, gamma, x, w);
     if (twice) {
         filter(integrator, gamma, x, w);
     }
 
-    // as velocities
+    // both as momenta
     for (int k = 0; k < s->dof; k++) {
         x[k] *= ANGLE_RATE;
     }
@@ -473,7 +494,7 @@ double stiff_error(stiff_integrator *integrator, bool twice)
     const double of_angles = stiff_momentum(integrator, x);
     double square = of_velocities * of_velocities + of_angles * of_angles;
 
-    // with what current and wall have of their own
+    // and the errors of the current and of the wall's impulse
     if (s->drive == STIFF_FLOWS) {
         const double of_current = current_error(s, gamma, twice);
         square += of_current * of_current;
