@@ -25,6 +25,7 @@ typedef struct pair_contact {
     double s1, s2;       // plane: S of both links; point: l sin d and S2 [m]
 } pair_contact;
 
+// Computes that at the angles q.
 static inline pair_contact pair_contact_at(const arm *a, const double *q)
 {
     const wall_model *wall = &a->wall;
@@ -63,7 +64,8 @@ static inline pair_mass pair_mass_of(const arm *a)
     return (pair_mass){m22 + square + a->hub_inertia, square / 2, m22};
 }
 
-// M^-1 of a generalised force; a stuck hub takes what the first entry is.
+// Solves M x = b; `coupling` is m12 times the bend's cosine. If the hub is stuck, its
+// friction balances b1, and x1 is 0.
 static inline void pair_solve(const pair_mass *m, double coupling, bool stuck, double b1,
                               double b2, double *x1, double *x2)
 {
@@ -77,7 +79,8 @@ static inline void pair_solve(const pair_mass *m, double coupling, bool stuck, d
     *x2 = (m->m11 * b2 - coupling * b1) * per_det;
 }
 
-// chain_accelerations of a pair.
+// Accelerations and reactions of a pair, as chain_accelerations gives them: those without
+// the wall, then the force that keeps the penetration's second derivative zero.
 static inline void pair_accelerations(const arm *a, const double *q, const double *w,
                                       contact_state mode, double *alpha,
                                       chain_reaction *reaction)
@@ -88,7 +91,7 @@ static inline void pair_accelerations(const arm *a, const double *q, const doubl
     const double first = w[0] * w[0], second = w[1] * w[1];
     const bool stuck = mode.friction == HUB_STICK;
 
-    // what drives both links, the wall left aside
+    // the accelerations without the wall
     const double sliding = -mode.friction * a->motor.stiction;
     const double joint = a->joint_stiffness * bend + a->joint_damping * rate;
     const double swing = m.m12 * at.sine;
@@ -98,7 +101,7 @@ static inline void pair_accelerations(const arm *a, const double *q, const doubl
     double a1, a2;
     pair_solve(&m, coupling, stuck, b1, b2, &a1, &a2);
 
-    // what the wall answers, so that the arm stays on it
+    // g's second derivative, which in contact the force makes zero
     const double convective = a->wall.kind == WALL_POINT
                                   ? at.s1 * rate * rate - at.s2 * second
                                   : -(at.s1 * first + at.s2 * second);

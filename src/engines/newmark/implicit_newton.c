@@ -3,14 +3,15 @@
 #include "src/arm/forces.h"
 #include "src/base/sincos.h"
 
-// Residual quantities of the iterate: forces between the links and node accelerations.
+// Computes the accelerations of the links' centres and the forces between the links for
+// an iterate's velocities and accelerations; (fx, fy) is the contact force on the tip.
 static void forces_between_links(const arm *a, implicit_sweep *link, const double *w,
                                  const double *acceleration, double fx, double fy)
 {
     const double l = a->link_length, m = a->link_mass;
-    double ax = 0, ay = a->amount.gravity; // what weight would take
 
-    // accelerations from hub to tip, then the forces that they need from tip to hub
+    // accelerations from hub to tip; weight acts as an acceleration of the hub upwards
+    double ax = 0, ay = a->amount.gravity;
     for (int k = 0; k < a->links; k++) {
         double al = acceleration[a->first + k], w2 = w[a->first + k] * w[a->first + k];
         double dx = -l * (link[k].s * al + link[k].c * w2);
@@ -20,9 +21,10 @@ static void forces_between_links(const arm *a, implicit_sweep *link, const doubl
         ax += dx;
         ay += dy;
     }
+
+    // the forces that they need, from tip to hub
     fx += a->tip_mass * ax;
     fy += a->tip_mass * ay;
-
     for (int k = a->links - 1; k >= 0; k--) {
         link[k].force_x = fx;
         link[k].force_y = fy;
@@ -31,12 +33,14 @@ static void forces_between_links(const arm *a, implicit_sweep *link, const doubl
     }
 }
 
-// Penetration, and how the wall acts at q: direction, lever.
+// How the wall acts on the last link: direction and lever of its force, penetration, and
+// whether the direction turns with the link (1 for a point wall, where its derivative by
+// the link's angle is -(c, s), else 0).
 typedef struct contact_point {
-    double ex, ey, lever, g,
-        angle_force; // angle_force: e' = -r of a point wall, see below
+    double ex, ey, lever, g, turns_with_link;
 } contact_point;
 
+// Computes that from the directions of the links in `link`.
 static contact_point contact_at(const arm *a, const implicit_sweep *link)
 {
     const double l = a->link_length;
@@ -51,7 +55,7 @@ static contact_point contact_at(const arm *a, const implicit_sweep *link)
                            a->wall.kind == WALL_POINT};
 }
 
-// J v from the directions in `link`.
+// J v, the rate of the penetration at velocities v, from the directions in `link`.
 static double rate_along(const arm *a, const implicit_sweep *link, contact_point p,
                          const double *v)
 {
@@ -62,7 +66,8 @@ static double rate_along(const arm *a, const implicit_sweep *link, contact_point
     return sum + p.lever * v[a->dof - 1];
 }
 
-// d(dg/dt)/dq . dq from the directions in `link`, dw = gamma' dq, at velocities w.
+// How much the rate of the penetration, J w, changes with the angles by dq and with the
+// velocities by gamma dq, from the directions in `link`.
 static double rate_change(const arm *a, const implicit_sweep *link, contact_point p,
                           const double *w, double gamma, const double *dq)
 {
@@ -78,17 +83,18 @@ static double rate_change(const arm *a, const implicit_sweep *link, contact_poin
     }
 
     // dg/dt = s w + t'v_base with s = r'd, see wall.h
-    double along = 0; // r'v_base
+    // along = r'v_base, to which link k brings l sin(q_N - q_k) times its velocity
+    double along = 0;
     for (int k = 0; k < last; k++) {
-        double sine =
-            end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l sin(q_N - q_k)
+        const double sine = end->s * link[k].c - end->c * link[k].s;
         along += l * sine * v[k];
         sum += l * (-sine * v[last] + sine * v[k]) * x[k];
     }
     return sum + (-p.g * v[last] - along) * x[last];
 }
 
-// The links beyond a node, eliminated: how they answer it (implicit_newton.h).
+// How the links beyond a node, whose angles have been eliminated, react to changes of the
+// node's acceleration and of the angle before it (implicit_newton.h).
 typedef struct beyond {
     double pxx, pxy, pyx, pyy; // P, not symmetric
     double hx, hy;             // p_f
@@ -98,7 +104,9 @@ typedef struct beyond {
     double outer;              // torque of the joint beyond
 } beyond;
 
-// The first link turns with the hub: what that adds to its slope and its right side.
+// Adds the rigid hub, which turns with the first link, to that link's equation: to the
+// slope `pivot` and the right side. A stuck hub does not turn; it->excess gets the torque
+// that friction has to hold.
 static void add_hub(const arm *a, implicit_iterate *it, implicit_tangent t,
                     double residual, double *pivot, double *right, double *right1)
 {
@@ -113,8 +121,9 @@ static void add_hub(const arm *a, implicit_iterate *it, implicit_tangent t,
     }
 }
 
-// What link k, whose angle answers as L says, shows with those beyond to the link before:
-// px, py are its force on its base by its angle, kappa its joint's slope.
+// Turns *b into what link k and those beyond show to the link before. L gives the angle
+// of link k; (px, py) is the derivative of the force on its base by that angle, kappa
+// that of its joint's torque.
 static inline __attribute__((always_inline)) void show_before(const implicit_sweep *L,
                                                               double mass, double px,
                                                               double py, double kappa,
@@ -137,8 +146,9 @@ static inline __attribute__((always_inline)) void show_before(const implicit_swe
     b->torque1 = kappa * L->unit;
 }
 
-// Eliminates the angle of link k, with what it lacks of its balance of torques about its
-// node.
+// Eliminates the change of link k's angle, tip to hub: the balance of torques about the
+// link's node gives it as a function of the node's acceleration and of the change of the
+// angle before. *b becomes what link k and those beyond show to the link before.
 static inline __attribute__((always_inline)) void
 eliminate_tangent(const arm *a, implicit_sweep *link, int k, implicit_iterate *it,
                   implicit_tangent t, double lever, beyond *b)
@@ -192,14 +202,15 @@ eliminate_tangent(const arm *a, implicit_sweep *link, int k, implicit_iterate *i
     L->free = right / pivot;
     L->unit = right1 / pivot;
 
-    // the answer of this link and all beyond it
+    // the force on the base by the angle, of this link and all beyond it
     const double px = m * half * L->zx + l * zpx + b->hx;
     const double py = m * half * L->zy + l * zpy + b->hy;
     show_before(L, m, px, py, kappa, b);
     b->outer = inner;
 }
 
-// From hub to tip: dq for the residual, `unit` for a unit contact force.
+// Computes the changes of all angles from hub to tip: dq by the residual, `unit` by a
+// unit contact force.
 static void substitute_tangent(const arm *a, const implicit_sweep *link, bool stuck,
                                double *dq, double *unit)
 {
@@ -233,7 +244,7 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
     const int last = a->links - 1;
     const double *w = it->w;
 
-    // residual quantities of the iterate
+    // directions, contact and forces of the iterate
     contact_point point = {0};
     for (int k = 0; k <= last; k++) {
         inline_sincos(it->q[a->first + k], &link[k].s, &link[k].c);
@@ -246,8 +257,8 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
 
     // elimination from tip to hub; a point wall's force turns with the last link
     beyond b = {.pxx = a->tip_mass, .pyy = a->tip_mass, .ex = point.ex, .ey = point.ey};
-    b.hx = -it->force * point.angle_force * link[last].c;
-    b.hy = -it->force * point.angle_force * link[last].s;
+    b.hx = -it->force * point.turns_with_link * link[last].c;
+    b.hy = -it->force * point.turns_with_link * link[last].s;
     for (int k = last; k >= 0; k--) {
         eliminate_tangent(a, link, k, it, t, k == last ? point.lever : 0, &b);
     }
@@ -269,7 +280,7 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
         return 0;
     }
 
-    // the force that meets the constraint
+    // the change df of the force with which the changed angles meet the constraint
     double df;
     if (it->velocity_level) {
         const double rate = rate_along(a, link, point, w);

@@ -22,20 +22,23 @@
 
 // --- series ----------------------------------------------------------------------------
 
-// Magnitudes of the coefficients of the two last orders, and what those of the earlier
-// one are multiplied with at the end of a step of a length h: of velocities h^(order -
-// 1), of losses h times that.
+// Magnitudes of the coefficients of the last order but one (`before`) and of the last,
+// and the power of the step's length h that the former is multiplied with at its end:
+// h^(order - 1) for velocities, h^order for losses.
 typedef struct last_terms {
     real before, last, power;
 } last_terms;
 
+// The lanes whose last two terms are larger than a limit at the end of a step of length
+// h.
 KERNEL mask too_large(last_terms x, real h, real limit)
 {
     return ~MASK((x.last * h + x.before) * x.power <= limit);
 }
 
-// The longest step, up to the one of length h that x is of, whose last terms are small;
-// of the highest order.
+// The longest step with small last terms, shortened from the length h that the terms x
+// belong to. Series of the highest order are assumed, so that a step shortened by s has
+// its power shortened by s^(TAYLOR_MOST - 1), which is computed by squaring.
 KERNEL real allowed_step(real h, last_terms x, real limit)
 {
     double shrinking = 1, factor = SHORTENING;
@@ -59,8 +62,8 @@ KERNEL real allowed_step(real h, last_terms x, real limit)
     return h;
 }
 
-// Takes what lies beyond an arm's own order out of its lane, where others have gone
-// further; open[i]: the lanes that go beyond the order 2 i.
+// Sets the coefficients beyond an arm's own order to zero in its lane, if those of other
+// lanes go further; open[i] has the lanes that go beyond the order 2 i.
 KERNEL void cut_off(real *block, const mask *open, int order)
 {
     for (int n = LEAST_ORDER + 1; n <= order; n++) {
@@ -90,8 +93,9 @@ KERNEL real gap_term(const factors *x, ptrdiff_t n, real l, const int point)
     return -(PART(DIRECTION1(x, n), 1) + S2);
 }
 
-// What a step leaves of the function that the wall has watched, and where it ends in
-// between: `count` terms of the gap, or in contact of the force.
+// Bounds the event function of the wall over the step: the gap or, in contact, the force,
+// as a series `wall` of `count` terms. Into the block go its least value, the greatest
+// force and, where it may fall below zero, its first root.
 KERNEL void bound_wall(real *block, const int contact, const real *wall, int count,
                        mask jumped)
 {
@@ -112,7 +116,8 @@ KERNEL void bound_wall(real *block, const int contact, const real *wall, int cou
     }
 }
 
-// The same of the hub: of its velocity, or where it is stuck of what holds it.
+// Bounds the event function of the hub over the step in the same way: its velocity in the
+// direction in which it slides or, where it is stuck, what is left up to stiction.
 KERNEL void bound_hub(real *block, const real *rates, const real *hold, int order,
                       mask stuck, mask jumped)
 {
@@ -122,6 +127,8 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
     const edge_limits edge = {zero, block[AT_EDGE_RATE], zero + EDGE_MORE};
     const real first = least_at_first(&turning, rates, sense, h, jumped, &edge);
     real left = least_of(&turning, sense, first);
+
+    // stuck lanes: stiction less the largest torque in either direction
     if (any(stuck)) {
         const enclosure torque = enclosure_of(hold, order, h);
         const real low = lowest(&torque, torque.start - torque.off);
@@ -129,6 +136,8 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
         const real spared = select_lanes(jumped, zero + EDGE_VALUE, zero);
         left = select_lanes(stuck, block[AT_STICTION] - most - spared, left);
     }
+
+    // the root, of lanes that slide
     block[AT_HUB_LEAST] = left;
     block[AT_HUB_ROOT] = zero - 1.0;
     if (any(~stuck & ~MASK(left > 0))) {
@@ -138,7 +147,7 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
     }
 }
 
-// Velocities' coefficients of the orders n and n + 1, as last_terms has them.
+// The last terms of the velocities in series that end with the order n + 1.
 KERNEL last_terms rate_terms(const real *block, ptrdiff_t n, real power,
                              const int hub_spring)
 {
@@ -152,7 +161,7 @@ KERNEL last_terms rate_terms(const real *block, ptrdiff_t n, real power,
     return x;
 }
 
-// The same of what is lost, the orders n - 1 and n.
+// The last terms of the losses (viscous and structural) in the same series.
 KERNEL last_terms loss_terms(const real *block, const equations *e, ptrdiff_t n,
                              real power)
 {
@@ -166,8 +175,9 @@ KERNEL last_terms loss_terms(const real *block, const equations *e, ptrdiff_t n,
     return x;
 }
 
-// The lanes whose terms are too large at the wanted length to end with the order n + 1;
-// limit: on those of the velocities, of a share `scale` of them.
+// The lanes whose series cannot end with the order n + 1, as their terms are too large at
+// the wanted length. `limit` is that on terms of the velocities, which is proportional to
+// the largest velocity, `scale`.
 KERNEL mask needs_more_terms(const real *block, const equations *e, const factors *x,
                              ptrdiff_t n, real power, real limit, real scale,
                              const int contact, const int point, const int hub_spring)
@@ -194,7 +204,7 @@ KERNEL mask needs_more_terms(const real *block, const equations *e, const factor
     return large;
 }
 
-// The gap, as far as the angles are known.
+// Writes the series of the gap, which goes as far as that of the angles.
 KERNEL void put_gap(real *block, const equations *e, factors *x, ptrdiff_t order,
                     sums *sum, const int point)
 {
@@ -205,25 +215,31 @@ KERNEL void put_gap(real *block, const equations *e, factors *x, ptrdiff_t order
     }
 }
 
-// Last terms of series of this order, all counted as the velocities are.
+// The last terms of all series of this order, each scaled so that the velocities' limit
+// holds for their sum.
 KERNEL last_terms all_last_terms(const real *block, const equations *e, ptrdiff_t order,
                                  real power, real scale, const int contact,
                                  const int hub_spring)
 {
     last_terms tail = rate_terms(block, order - 1, power, hub_spring);
-    if (!contact) { // the gap's rate: sines of large swings continue where those have
-                    // ended
+
+    // the gap's rate: of large swings its series is longer than those of the velocities
+    if (!contact) {
         const real *gap = block + AT_GAP, per_length = 1 / e->l;
         tail.last += magnitude(gap[order + 1]) * (double)(order + 1) * per_length;
         tail.before += magnitude(gap[order]) * (double)order * per_length;
     }
-    if (!hub_spring && e->sticks) { // what a stuck hub is held from
+
+    // the torque that holds a stuck hub
+    if (!hub_spring && e->sticks) {
         const real *hold = block + AT_HOLD;
         const real per_inertia = select_lanes(e->stuck, 1 / e->m11, (real){0});
         tail.last += magnitude(hold[order - 1]) * inverse[order] * per_inertia;
         tail.before += magnitude(hold[order - 2]) * inverse[order - 1] * per_inertia;
     }
-    const real per_scale = 1 / scale; // and the losses, as above
+
+    // the losses
+    const real per_scale = 1 / scale;
     const last_terms lost = loss_terms(block, e, order - 1, power);
     tail.before += lost.before * per_scale;
     tail.last += lost.last * per_scale;
@@ -253,6 +269,8 @@ KERNEL equations equations_of(const real *block, const int hub_spring, bool damp
     return e;
 }
 
+// Computes the series of a step for all lanes, as LAST_TERMS asks, and the length and
+// bounds that follow from them, into the block. Returns their order.
 KERNEL int series(real *block, const int contact, const int point, const int hub_spring,
                   bool damped)
 {
@@ -270,8 +288,7 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     put_start(block, &e, &x, point, hub_spring);
     invert_start(&e, &x, contact, point, hub_spring);
 
-    // as far as the terms matter: an order lower than the highest at which they may be
-    // small enough
+    // order by order, until the terms are small enough in every lane
     const real *w1 = block + AT_RATE_1, *w2 = block + AT_RATE_2;
     const real wanted = block[AT_WANTED];
     const real scale = greater(greater(magnitude(w1[0]), magnitude(w2[0])), zero + 1.0);
@@ -298,7 +315,7 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         }
     }
 
-    // angles and gap have one more
+    // angles and gap have one order more
     for (int i = hub_spring ? 0 : 1; i < 3; i++) {
         const real rate = block[AT_RATE_0 + i * (TAYLOR_MOST + 1) + order];
         block[AT_ANGLE_0 + i * (TAYLOR_MOST + 2) + order + 1] = rate * inverse[order + 1];
@@ -307,7 +324,7 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         put_gap(block, &e, &x, order, &last.sum, point);
     }
 
-    // where no order was enough the step is shortened
+    // the step is shortened in the lanes in which no order was enough
     last_terms tail = all_last_terms(block, &e, order, power, scale, contact, hub_spring);
     const mask ended = order < TAYLOR_MOST ? ~(mask){0} : ~open[TAYLOR_MOST / 2 - 1];
     tail.last = select_lanes(ended, zero, tail.last);
@@ -318,8 +335,7 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     }
     block[AT_ALLOWED] = h;
 
-    // what the step leaves of the wall's function and the hub's, and where it ends in
-    // between
+    // bounds and roots of the event functions of wall and hub
     const mask jumped = MASK(block[AT_EDGE_RATE] >= 0);
     if (contact) {
         bound_wall(block, contact, block + AT_FORCE, (int)order, jumped);
@@ -336,8 +352,10 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
 
 // --- entries ---------------------------------------------------------------------------
 
-// Each form has loops of its own.
-KERNEL int of_wall(real *block, taylor_form f, const int contact, const int hub_spring)
+// The series against a point wall or a plane one; constants as arguments give each form
+// loops of its own.
+KERNEL int series_of_wall(real *block, taylor_form f, const int contact,
+                          const int hub_spring)
 {
     if (f.point) {
         return series(block, contact, 1, hub_spring, f.damped);
@@ -345,25 +363,27 @@ KERNEL int of_wall(real *block, taylor_form f, const int contact, const int hub_
     return series(block, contact, 0, hub_spring, f.damped);
 }
 
+// Computes the series of a block by the loops of its form.
 static int compute_series(double *block, taylor_form f)
 {
     real *lanes = (real *)block;
     if (f.hub_spring && f.contact) {
-        return of_wall(lanes, f, 1, 1);
+        return series_of_wall(lanes, f, 1, 1);
     }
     if (f.hub_spring) {
-        return of_wall(lanes, f, 0, 1);
+        return series_of_wall(lanes, f, 0, 1);
     }
     if (f.contact) {
-        return of_wall(lanes, f, 1, 0);
+        return series_of_wall(lanes, f, 1, 0);
     }
-    return of_wall(lanes, f, 0, 0);
+    return series_of_wall(lanes, f, 0, 0);
 }
 
 #if LANES > 1
+// Copies the inputs of LANES blocks of single arms into the lanes of one block.
 static void gather(double *block, const double *const *own)
 {
-    // whole vectors: loads that follow on stores of parts of theirs wait for them
+    // by whole vectors: a load would wait for earlier stores of parts of its vector
     for (int place = 0; place < AT_INPUTS; place++) {
         real x = (real){0};
         for (int i = 0; i < LANES; i++) {

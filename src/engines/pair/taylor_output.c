@@ -1,6 +1,6 @@
-// What the step of a two-link arm tells of itself (engine.h): what it comes to at
-// instants of it, the event functions, and what another torque of the motor does at once
-// to one whose hub slides.
+// The output of a two-link arm's step (engine.h): the states within it, the event
+// functions, and the change that another torque of the motor makes at once if the hub
+// slides.
 #include <math.h>
 #include <string.h>
 
@@ -12,8 +12,8 @@
 
 // --- states ----------------------------------------------------------------------------
 
-// What one of the instants comes to, into `state`; in contact the gap and its derivatives
-// ought to be zero, and the second one is taken so.
+// Copies the motion at instant i of those evaluated into `state`. In contact the gap and
+// its derivatives ought to be zero, and the second derivative is set to that.
 static void take_instant(const arm *a, const motion *m, const taylor_instants *at, int i,
                          double *state)
 {
@@ -31,7 +31,7 @@ static void take_instant(const arm *a, const motion *m, const taylor_instants *a
         acceleration[0] = acceleration[m->dof] = at->acceleration[body][i];
     }
 
-    // what it has lost and pressed
+    // the quadratures: values at the step's start and the integrals since
     const double turn = state_velocities(m, state)[0];
     quadrature[QUADRATURE_VISCOUS] =
         before[QUADRATURE_VISCOUS] + a->motor.damping * at->hub_square[i];
@@ -58,7 +58,8 @@ static void take_instant(const arm *a, const motion *m, const taylor_instants *a
     }
 }
 
-// The instant h: evaluated with others', where *place says, or into `one`.
+// The motion at h in the step: that of the whole group, at number *place, if the group
+// was evaluated for this instant; else it is evaluated into `one`.
 static const taylor_instants *instant_at(taylor_integrator *s, double h,
                                          taylor_instants *one, int *place)
 {
@@ -118,7 +119,7 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
     const double width = count > 0 ? (to - from) / count : 0;
     const int order = lane->form.order;
 
-    // forces may be evaluated with others', which began their steps with the steps
+    // forces that were evaluated for the whole group, from the step's start on
     if (of == OUTPUT_FORCE && count > 0 && lane->pieces == count && from == 0 &&
         lane->end == to) {
         const taylor_pieces *pieces = &lane->group->pieces;
@@ -131,6 +132,7 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
         return;
     }
 
+    // the series of the quantity
     const int hub = a->first == 0 ? AT_ANGLE_1 : AT_ANGLE_0;
     int place = hub, terms = order + 2;
     if (of == OUTPUT_FORCE) {
@@ -140,6 +142,8 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
         place = AT_GAP;
     }
     const double *term = taylor_terms(lane, place, terms);
+
+    // its values, of which the first may be the start itself
     for (int i = 0; i <= count; i++) {
         const double t = s->used + (from + i * width);
         at[i] = t > 0 ? value_and_slope_at(term, terms, t)
@@ -154,15 +158,16 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
 
 // --- event functions -------------------------------------------------------------------
 
-static double rounding_of(const arm *a, const motion *m, const taylor_integrator *s)
+// Amplification of rounding errors (motion_rounding) at the start of the step.
+static double start_rounding(const arm *a, const motion *m, const taylor_integrator *s)
 {
     return motion_rounding_at(a, m->dof, s->kept + KEPT_ANGLES,
                               s->kept + KEPT_VELOCITIES);
 }
 
-// A function that is to be watched, from the series: only where it comes near zero is it
-// asked for. Just after an event it may begin at zero, as the gap does after a bounce cut
-// short.
+// Makes the polynomial of an event function from the series, once it is asked for: in
+// most steps bounds exclude the event, and it is not. Just after an event the function
+// may begin at zero, which is then taken out of it.
 static void prepare_event_function(const arm *a, const motion *m, taylor_integrator *s,
                                    event_function w)
 {
@@ -190,17 +195,18 @@ static void prepare_event_function(const arm *a, const motion *m, taylor_integra
         }
         if (jumped || inside) {
             const double lacking =
-                EDGE_RATE * (1 + LEFT_OUT * (rounding_of(a, m, s) - 1));
+                EDGE_RATE * (1 + LEFT_OUT * (start_rounding(a, m, s) - 1));
             deflate_root(p, (double[]){EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, lacking)});
         }
     }
 
-    // the hub; what holds a stuck one may hold a little more just after an event
+    // the hub; a stuck one may exceed stiction by a rounding error just after an event
     if (w == EVENT_OF_HUB) {
         const int place = a->hub_spring ? AT_RATE_0 : AT_RATE_1;
         set_polynomial(p, taylor_term(lane, place), spacing, order + 1, friction);
         if (jumped) {
-            deflate_root(p, (double[]){0, EDGE_RATE * rounding_of(a, m, s), EDGE_MORE});
+            deflate_root(p,
+                         (double[]){0, EDGE_RATE * start_rounding(a, m, s), EDGE_MORE});
         }
     } else if (w == EVENT_OF_STICTION) {
         const double *hold = taylor_term(lane, AT_HOLD);
@@ -215,7 +221,9 @@ static void prepare_event_function(const arm *a, const motion *m, taylor_integra
     }
 }
 
-static const polynomial *function(const arm *a, const motion *m, event_function w)
+// The polynomial of an event function, made when it is first asked for in a step.
+static const polynomial *prepared_function(const arm *a, const motion *m,
+                                           event_function w)
 {
     taylor_integrator *s = m->memory;
     if (!(s->known & 1u << w)) {
@@ -228,7 +236,7 @@ value_and_slope taylor_event_function(const arm *a, const motion *m, event_funct
                                       double h)
 {
     const taylor_integrator *s = m->memory;
-    const polynomial *p = function(a, m, w);
+    const polynomial *p = prepared_function(a, m, w);
     const double t = s->used + h;
     value_and_slope near = {p->terms[0], p->terms[1]};
     if (t > 0) {
@@ -250,7 +258,7 @@ double taylor_second_derivative(const arm *a, const motion *m, event_function w,
                                 double from, double to)
 {
     taylor_integrator *s = m->memory;
-    const polynomial *p = function(a, m, w);
+    const polynomial *p = prepared_function(a, m, w);
     const double t = s->used + to;
     double near = curvature_bound(p, t);
     (void)from;
@@ -275,9 +283,9 @@ bool taylor_excludes_event(const motion *m, event_function w)
     return s->lane.block[AT_HUB_LEAST] > 0;
 }
 
-// The root of an event function that the series' kernel has found, since the step's
-// start; beyond every step where the function stays clear, negative where the kernel has
-// not found it.
+// The instant of the root of an event function that taylor_kernel.c found, from the
+// present state on [s]: infinite if the function stays `clear` of zero, negative if the
+// kernel found none.
 static double known_root(const taylor_integrator *s, int place, bool clear)
 {
     if (clear) {
@@ -322,8 +330,9 @@ void taylor_first_event(const arm *a, motion *m, step_end *end)
 
 // --- another torque --------------------------------------------------------------------
 
-// J, the entries of dg/dq, as taylor_order.h has them [m].
-static void levers(const arm *a, const double *q, double bend_cosine, double j[2])
+// The entries j of dg/dq at the angles q [m]; taylor_order.h has their formulas.
+static void penetration_gradient(const arm *a, const double *q, double bend_cosine,
+                                 double j[2])
 {
     const wall_model *w = &a->wall;
     double s, c;
@@ -346,17 +355,16 @@ void taylor_retorque(const arm *a, motion *m, double change)
         return;
     }
 
-    // M^-1 of a unit torque on the first link
+    // accelerations by a unit torque on the first link, which turns with the hub
     const double *q = state_angles(m, state), c = inline_cos(q[1] - q[0]);
     const pair_mass mass = pair_mass_of(a);
     double first, second;
     pair_solve(&mass, mass.m12 * c, false, 1, 0, &first, &second);
 
-    // and what the wall makes of it: in contact its force keeps the gap's rate from
-    // changing
+    // the wall: in contact its force changes so that the gap's acceleration stays zero
     if (wall_stands(&a->wall)) {
         double j[2], y1, y2;
-        levers(a, q, c, j);
+        penetration_gradient(a, q, c, j);
         const double closing = j[0] * first + j[1] * second;
         if (state[SLOT_CONTACT] != 0) {
             pair_solve(&mass, mass.m12 * c, false, j[0], j[1], &y1, &y2);

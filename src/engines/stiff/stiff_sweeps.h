@@ -72,10 +72,14 @@ KERNEL lanes to_stages(complex_lanes y, int half)
 
 // --- the stages ------------------------------------------------------------------------
 
+// Predicts accelerations and force at the stages from those of the step before, by the
+// weights of stiff_stages.c, and velocities and angles from these by the Radau matrix A:
+// w = w0 + h A a, q = q0 + h c w0 + (h A)^2 a. A stuck hub stays.
 static void predict_stages(stiff_step *s, const double *before, const double *force,
                            const double *weight)
 {
-    // weights of the accelerations for velocities and angles: h a, (h a)^2
+    // the weights for velocities and angles: those for accelerations, times h A once and
+    // twice
     _Alignas(32) double once[RADAU_STAGES][RADAU_LANES], twice[RADAU_STAGES][RADAU_LANES];
     const double h = s->length;
     const complex_lanes root = {lanes_at(radau_root_real),
@@ -98,6 +102,7 @@ static void predict_stages(stiff_step *s, const double *before, const double *fo
         }
     }
 
+    // four stages together; the last lane of the second half is the step's start
     for (int half = 0; half < STIFF_HALVES; half++) {
         const lanes node = lanes_at(&radau_node[4 * half]);
         const lanes start = half == 0 ? all(0) : (lanes){0, 0, 0, 1};
@@ -115,12 +120,16 @@ static void predict_stages(stiff_step *s, const double *before, const double *fo
             g->w[half] = w;
             g->q[half] = q;
         }
+
+        // the contact force
         lanes f = s->force0 * start;
         for (int j = 0; j < RADAU_STAGES; j++) {
             f += force[j] * lanes_at(&weight[RADAU_LANES * j + 4 * half]);
         }
         s->force.half[half] = f;
     }
+
+    // a stuck hub
     if (s->stuck) {
         for (int half = 0; half < STIFF_HALVES; half++) {
             s->stage[0].a[half] = s->stage[0].w[half] = all(0);
@@ -129,9 +138,10 @@ static void predict_stages(stiff_step *s, const double *before, const double *fo
     }
 }
 
-// The current at the stages from the hub's velocities there. Through an inductance it
-// solves its own collocation: with g of the systems, (L + g Ra) T^-1 i' = T^-1 (volts -
-// Ra i0 - kB w).
+// Computes the drive's current and its rate at the stages from the hub's velocities w
+// there. Without an inductance it is at its limit or follows from the voltage. With an
+// inductance L it solves the same collocation as the motion, in the complex systems with
+// their factors g: (L + g Ra) T^-1 i' = T^-1 (volts - Ra i0 - kB w).
 KERNEL void follow_current(stiff_step *s)
 {
     const motor_model *m = s->motor;
@@ -164,15 +174,16 @@ KERNEL void follow_current(stiff_step *s)
     }
 }
 
-// What the tip of the arm does at the stages: its acceleration, those, velocities and
-// places of the last link's base, and what the arm has lost.
+// Motion of the arm's end at the stages: acceleration and velocity of the tip, the same
+// and the place of the last link's base, and the power that the arm loses.
 typedef struct stiff_tip {
     lanes ax, ay, vx, vy, base_ax, base_ay, base_vx, base_vy, base_x, base_y, lost;
 } stiff_tip;
 
-// From hub to tip: directions, accelerations, and what moves the links so against the
-// forces on them; of the moments about their centres, into r, what is no joint's. False
-// where a link turns too far.
+// Sweeps from hub to tip: computes the links' directions and accelerations, and the force
+// and moment on each link that these need, beside the external forces on it. The moments
+// about the centres go into r, those of joints not yet included. False if a link turns
+// too far in the step.
 KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip)
 {
     const lanes zero = all(0);
@@ -185,12 +196,16 @@ KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip
         stiff_body *b = &s->body[k];
         const lanes z = g->q[half] - s->q0[s->first + k], w = g->w[half], al = g->a[half];
         const lanes w2 = w * w;
+
+        // direction, by the turn z since the step's start
         lanes sz, cz;
         SINCOS_NEAR_ZERO(lanes, z, sz, cz);
         within &= z * z < MOST_TURN_SQUARE;
         const lanes c = l->cosine * cz - l->sine * sz, sn = l->sine * cz + l->cosine * sz;
         b->c[half] = c;
         b->s[half] = sn;
+
+        // how the link's end moves relative to its base
         tip->base_ax = ax, tip->base_ay = ay, tip->base_vx = vx, tip->base_vy = vy;
         tip->base_x = x, tip->base_y = y;
         const lanes dx = -l->length * (sn * al + c * w2),
@@ -270,7 +285,8 @@ KERNEL stiff_contact meet_wall(stiff_step *s, int half, const stiff_tip *tip)
     return at;
 }
 
-// The wall's forces on an arm in contact, and what they lose and work.
+// Computes the wall's forces on an arm in contact and, to `account` for energy, the power
+// that the wall loses and that with which a moving wall works on the arm.
 KERNEL void press_wall(stiff_step *s, int half, bool account, const stiff_tip *tip,
                        stiff_contact *at)
 {
@@ -281,7 +297,7 @@ KERNEL void press_wall(stiff_step *s, int half, bool account, const stiff_tip *t
                                   at->ey * tip->vx - at->ex * tip->vy - slides};
     const wall_answer answer = wall_forces(wall, s->amount, &meeting);
 
-    // what a wall that gives answers, and what a face with a mass takes
+    // the force of a wall that gives, plus what accelerates a face with a mass
     if (s->contact == STIFF_GIVES) {
         const lanes al = s->stage[s->dof - 1].a[half];
         const lanes rate2 =
@@ -304,11 +320,13 @@ KERNEL void press_wall(stiff_step *s, int half, bool account, const stiff_tip *t
     s->wall_lost.half[half] = answer.lost;
 }
 
-// From tip to hub: forces, and what each link's equation lacks; `size` is that of the
-// forces on shapes. Returns the torque of the joint at the hub, 0 of a rigid one.
+// Sweeps from tip to hub: sums up the forces and completes the residual r of each link's
+// balance of moments. `size` has the forces of modal damping. Returns the torque of the
+// joint at the hub, 0 if the hub is rigid.
 KERNEL lanes sweep_inwards(stiff_step *s, int half, bool account, const stiff_contact *at,
                            const lanes *size, stiff_tip *tip)
 {
+    // the forces at the tip: its mass, the wall, and the external ones
     const int last = s->links - 1;
     const force_amounts amount = *s->amount;
     const link_motion tip_moves = {tip->vx, tip->vy, all(0)};
@@ -353,6 +371,8 @@ KERNEL lanes sweep_inwards(stiff_step *s, int half, bool account, const stiff_co
     return outer;
 }
 
+// Computes the residuals of all equations of motion at half of the stages; to `account`
+// for energy, also the powers lost. False if a link turns too far.
 KERNEL bool sweep(stiff_step *s, int half, bool account)
 {
     const lanes zero = all(0);
@@ -416,11 +436,13 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
     return true;
 }
 
+// Computes the residuals at all stages, both halves one after the other (sweep).
 static bool residual(stiff_step *s, bool account)
 {
     if (s->drive != STIFF_DIRECT) {
         follow_current(s);
     }
+
     // each form has a sweep of its own
     if (account) {
         return sweep(s, 0, true) && sweep(s, 1, true);
