@@ -143,7 +143,7 @@ static status report_runs(void *context, bool over, fault *f)
 
 // Of a run and the same without a push, where open-loop touches the wall at that time
 // [s].
-static exam_verdict judge_run(const drawn_case *c, double force, double open_loop,
+static exam_verdict judge_law_run(const drawn_case *c, double force, double open_loop,
                               const summary *s, const summary *calm)
 {
     // settling counts from the touch, or from a push after it
@@ -176,7 +176,7 @@ static exam_verdict judge_run(const drawn_case *c, double force, double open_loo
 }
 
 // Judges all runs, in the order in which they are listed.
-static void judge_runs(exam_work *w, size_t runs)
+static void judge_law_runs(exam_work *w, size_t runs)
 {
     law_exam *e = w->exam;
     double open_loop = (double)NAN;
@@ -188,7 +188,7 @@ static void judge_runs(exam_work *w, size_t runs)
         } else if (run->pushed) {
             const summary *calm = &w->summaries[c->push != 0 ? i + 1 : i];
             *verdict_at(e, run->law, run->force, run->of_case) =
-                judge_run(c, e->asked.forces[run->force], open_loop, &w->summaries[i],
+                judge_law_run(c, e->asked.forces[run->force], open_loop, &w->summaries[i],
                           calm);
         }
     }
@@ -254,7 +254,7 @@ status law_exam_run(law_exam *e, const exam_request *asked, const exam_options *
         return fault_set(f, STATUS_STOPPED, "stopped: %zu of %zu runs were done", e->done,
                          runs);
     }
-    judge_runs(&w, runs);
+    judge_law_runs(&w, runs);
     return STATUS_OK;
 }
 

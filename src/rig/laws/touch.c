@@ -1,6 +1,6 @@
 // A law for a small board: comes to a wall whose place is only roughly known, without
 // vibration and no faster than the commanded force allows, and presses by a passive hub
-// whose rest moves. No estimator of the arm, no search, 26 numbers and a page of states.
+// whose rest moves. No estimator of the arm, no search, 21 numbers and a page of states.
 //
 // Travel. The hub's speed changes in ramps that last one period of the arm's free mode,
 // after which the beam does not vibrate (Singer and Seering, ASME Journal of Dynamic
@@ -15,18 +15,19 @@
 //
 //     J2 phi'' + a theta'' = -k2 (phi - theta),    a = m l^2/2,  J2 = I + m l^2/4.
 //
-// Press. A spring and a damper tie the hub to a rest that moves so that the beam bends
-// for a planned force p, theta_r = theta_touch + p L/k_hub. The plan grows by
+// Press. The hub presses for a planned force p, and a damper ties it to a rest that moves
+// as the beam's bend for p does, theta_r' = p' L/k_hub. The plan grows by
 //
 //     p' = (f - p)/tau, within -b (p + p0) and b (p + p0),
 //
 // at first with the touch speed, and no faster than a tip that answers a push of the hub
 // the wrong way at first (a non-minimum-phase zero) can follow. An integral of p less the
 // reading works in unbroken contact only. The damper stays below c J/lag, where lag is
-// that of the loop, so that the hub remains passive.
+// that of the loop, so that the hub remains passive. No spring is needed: where the hub
+// rests is the wall's affair.
 //
 // Back. Where the wall has not been felt for a while, plan and integral decay, and the
-// rest creeps from a little behind the place of touch towards it, faster and faster.
+// damper's rest creeps towards the wall, faster and faster.
 #include <string.h>
 
 #include "src/base/sincos.h"
@@ -43,84 +44,60 @@ enum {
     SLOW_BEFORE,
     SLOW_BEHIND,
     SEARCH,
-    CRUISE,
     TRAVEL_DAMPING,
     TRAVEL_STIFFNESS,
     TRAVEL_FRICTION,
     PRESS_DAMPING,
-    PRESS_STIFFNESS,
-    PRESS_FRICTION,
     DAMPING_LIMIT,
     GROWTH,
     RISE_TIME,
     RISE_INERTIA,
-    LAG_LIMIT,
     INTEGRAL,
     DEAD_BAND,
     UNBROKEN,
-    FORGET,
     LOST,
     DECAY,
     LANDING_SPEED,
-    BACK_STIFFNESS,
-    DROP,
     FELT,
     JUMP,
-    CORRECTION,
     PARAMETERS
 };
 static const controller_parameter table[PARAMETERS] = {
     [FORCE_WANTED] = {.name = "force"},
     [THRESHOLD] = {.name = "contact_threshold"},
-    [TOUCH_SPEED] = {"touch_speed", "m/s", 0.1, 0, 1, "speed of the tip at the wall"},
-    [TOUCH_SPEED_PER_NEWTON] = {"touch_speed_per_newton", "m/s/N", 0.0329, 0, 1,
+    [TOUCH_SPEED] = {"touch_speed", "m/s", 0.109, 0, 1, "speed of the tip at the wall"},
+    [TOUCH_SPEED_PER_NEWTON] = {"touch_speed_per_newton", "m/s/N", 0.0269, 0, 1,
                                 "and what each newton of the command adds to it"},
-    [SLOW_BEFORE] = {"slow_before", "rad", 0.0103, 0, 1,
+    [SLOW_BEFORE] = {"slow_before", "rad", 0.0107, 0, 1,
                      "way before the believed wall at that speed"},
-    [SLOW_BEHIND] = {"slow_behind", "rad", 0.0239, 0, 1,
+    [SLOW_BEHIND] = {"slow_behind", "rad", 0.0317, 0, 1,
                      "way behind the believed wall at that speed"},
-    [SEARCH] = {"search", "m/s2", 0.953, 0, 10, "acceleration of the tip after that"},
-    [CRUISE] = {"cruise", "", 0.112, 0.1, 4,
-                "least time of travel, in periods of the free mode"},
-    [TRAVEL_DAMPING] = {"travel_damping", "N m s/rad", 8.07, 0, 10,
+    [SEARCH] = {"search", "m/s2", 0.614, 0, 10, "acceleration of the tip after that"},
+    [TRAVEL_DAMPING] = {"travel_damping", "N m s/rad", 9.23, 0, 10,
                         "of the hub about its path"},
-    [TRAVEL_STIFFNESS] = {"travel_stiffness", "N m/rad", 0.782, 0, 100,
+    [TRAVEL_STIFFNESS] = {"travel_stiffness", "N m/rad", 0.699, 0, 100,
                           "of the hub about its path"},
-    [TRAVEL_FRICTION] = {"travel_friction", "", 0.559, 0, 2,
+    [TRAVEL_FRICTION] = {"travel_friction", "", 0.659, 0, 2,
                          "share of the friction that is compensated on the way"},
-    [PRESS_DAMPING] = {"press_damping", "N m s/rad", 0.449, 0, 10,
+    [PRESS_DAMPING] = {"press_damping", "N m s/rad", 0.41, 0, 10,
                        "of the hub about its rest"},
-    [PRESS_STIFFNESS] = {"press_stiffness", "N m/rad", 1.14, 0, 100,
-                         "of the hub about its rest"},
-    [PRESS_FRICTION] = {"press_friction", "", 0.0983, 0, 2,
-                        "share of the friction that is compensated pressing"},
-    [DAMPING_LIMIT] = {"damping_limit", "", 0.356, 0, 10,
+    [DAMPING_LIMIT] = {"damping_limit", "", 0.316, 0, 10,
                        "largest damping, times the loop's lag over the hub's inertia"},
-    [GROWTH] = {"growth", "1/s", 4.78, 0.1, 100, "of the planned force at first"},
-    [RISE_TIME] = {"rise_time", "s", 0.0571, 0.001, 1,
+    [GROWTH] = {"growth", "1/s", 7.12, 0.1, 100, "of the planned force at first"},
+    [RISE_TIME] = {"rise_time", "s", 0.0759, 0.001, 1,
                    "time constant of the planned force at last"},
-    [RISE_INERTIA] = {"rise_inertia", "", 0.434, 0, 3,
+    [RISE_INERTIA] = {"rise_inertia", "", 0.856, 0, 3,
                       "share of the inertia's torque that is fed forward"},
-    [LAG_LIMIT] = {"lag_limit", "s", 0.0128, 0.001, 1,
-                   "lag of the loop beyond which the plan is slower"},
-    [INTEGRAL] = {"integral", "1/s", 4.28, 0, 100, "of the force's error"},
-    [DEAD_BAND] = {"dead_band", "", 0.0426, 0, 0.2,
+    [INTEGRAL] = {"integral", "1/s", 4.36, 0, 100, "of the force's error"},
+    [DEAD_BAND] = {"dead_band", "", 0.0376, 0, 0.2,
                    "error that it leaves, as a share of the command"},
-    [UNBROKEN] = {"unbroken", "s", 0.0513, 0, 1, "contact after which it works"},
-    [FORGET] = {"forget", "s", 0.132, 0.002, 10,
-                "in which the rest takes on the hub's angle in contact"},
-    [LOST] = {"lost", "s", 0.0711, 0, 1, "time without the wall after which it is lost"},
-    [DECAY] = {"decay", "1/s", 7.63, 0, 100, "of plan and integral then"},
-    [LANDING_SPEED] = {"landing_speed", "m/s/N", 0.207, 0.001, 1,
+    [UNBROKEN] = {"unbroken", "s", 0.0755, 0, 1, "contact after which it works"},
+    [LOST] = {"lost", "s", 0.0984, 0, 1, "time without the wall after which it is lost"},
+    [DECAY] = {"decay", "1/s", 5.17, 0, 100, "of plan and integral then"},
+    [LANDING_SPEED] = {"landing_speed", "m/s/N", 0.245, 0.001, 1,
                        "speed of the tip that comes back, for each newton"},
-    [BACK_STIFFNESS] = {"back_stiffness", "N m/rad", 0.72, 0, 100,
-                        "of the hub while the wall is lost"},
-    [DROP] = {"drop", "rad", 0.00549, 0, 0.2,
-              "by which it then stays behind the place of touch"},
-    [FELT] = {"felt", "", 0.673, 0.1, 2, "share of contact_threshold that is a touch"},
-    [JUMP] = {"jump", "rad/s", 0.118, 0.005, 10, "of the hub's rate that is a blow"},
-    [CORRECTION] = {"correction", "", 0.0877, 0, 1,
-                    "share of an unexplained rate that corrects the last link"},
+    [FELT] = {"felt", "", 0.447, 0.1, 2, "share of contact_threshold that is a touch"},
+    [JUMP] = {"jump", "rad/s", 0.112, 0.005, 10, "of the hub's rate that is a blow"},
 };
 
 enum { DELAYED = 7 }; // periods of delay that the reference is kept for, at most
@@ -134,6 +111,10 @@ enum { DELAYED = 7 }; // periods of delay that the reference is kept for, at mos
 #define INERTIA_SHARE     0.1  // of the beam's part that the damper may count on
 #define AHEAD_OF_WALL     0.05 // a blow further before the believed wall is none [rad]
 #define RETURN_TIME       0.2  // in which the landing speed doubles [s]
+#define LARGEST_INERTIAL  0.3  // share of the command that inertia may add in the rise
+#define ENCODER_TIME      0.02 // in which the hub's angle follows the encoder [s]
+#define OFFSET_TIME       0.5  // in which the tachometer's offset follows [s]
+#define LARGEST_OFFSET    0.05 // of the tachometer [rad/s]
 
 // The arm as it is told, and what follows from it.
 typedef struct touch_design {
@@ -182,9 +163,7 @@ typedef struct touch_memory {
     // pressing
     double plan;             // p [N]
     double first_plan;       // p0 [N]
-    double rest, rest_rate;  // theta_r [rad], [rad/s]
-    double touched;          // the place of touch [rad]
-    double slack;            // by which the hub rests elsewhere [rad]
+    double rest_rate;        // theta_r' [rad/s]
     double integral;         // [N m]
     double unfelt, unbroken; // time since the wall was felt, and felt without a break [s]
 } touch_memory;
@@ -244,7 +223,7 @@ static const char *tune(void *memory, const controller_setup *setup)
         (m->p[TOUCH_SPEED] + m->p[TOUCH_SPEED_PER_NEWTON] * force) / d->length;
     d->landing_rate = m->p[LANDING_SPEED] * force / d->length;
 
-    // what the loop's lag leaves of the dampers, and of the plan's speed
+    // what the loop's lag leaves of the dampers
     const double lag = setup->delay + setup->period / 2 + LAG_OF_SENSORS;
     const double behind_spring =
         1 / (d->compliance + 1 / d->inertia) - setup->hub_inertia;
@@ -252,7 +231,6 @@ static const char *tune(void *memory, const controller_setup *setup)
         m->p[DAMPING_LIMIT] * (setup->hub_inertia + INERTIA_SHARE * behind_spring) / lag;
     d->travel_damping = fmin(m->p[TRAVEL_DAMPING], most);
     d->press_damping = fmin(m->p[PRESS_DAMPING], most);
-    d->slowness = fmin(1, m->p[LAG_LIMIT] / lag);
     d->late = (int)fmin(DELAYED - 1, setup->delay / setup->period + 0.5);
     return NULL;
 }
@@ -261,7 +239,7 @@ static const char *tune(void *memory, const controller_setup *setup)
 
 // The first sample: everything at rest, and the cruise that brings the tip to the slow
 // stretch.
-static void begin(touch_memory *m, double encoder)
+static void begin_travel(touch_memory *m, double encoder)
 {
     const touch_design *d = &m->design;
     const double period = 2 * M_PI / d->frequency;
@@ -273,8 +251,8 @@ static void begin(touch_memory *m, double encoder)
     }
     const double way = fmax(0, m->rig.wall_angle - m->p[SLOW_BEFORE] - encoder -
                                    d->touch_rate * period / 2);
-    m->cruise_end = fmax(m->p[CRUISE] * period, way / FASTEST);
-    m->cruise_rate = fmax(d->touch_rate, way / m->cruise_end);
+    m->cruise_end = way / FASTEST;
+    m->cruise_rate = way > 0 ? FASTEST : d->touch_rate;
 }
 
 // The hub between its two sensors: the tachometer's integral, drawn to the encoder.
@@ -283,8 +261,9 @@ static void follow_hub(touch_memory *m, const controller_input *in)
     const double period = m->rig.period;
     m->angle += period * (in->tachometer - m->offset);
     const double off = in->encoder - m->angle;
-    m->angle += fmin(1, period / 0.02) * off;
-    m->offset = bounded(m->offset - fmin(0.1, period / 0.5) * off / 0.05, -0.05, 0.05);
+    m->angle += fmin(1, period / ENCODER_TIME) * off;
+    m->offset -= fmin(0.1, period / OFFSET_TIME) * off / 0.05;
+    m->offset = bounded(m->offset, -LARGEST_OFFSET, LARGEST_OFFSET);
     m->rate = in->tachometer - m->offset;
 }
 
@@ -311,10 +290,6 @@ static double follow_last_link(touch_memory *m)
 
     m->momentum += m->momentum_rate * period + beam * period * period / 2;
     m->momentum_rate += beam * period;
-    if (fabs(jump) < m->p[JUMP]) {
-        m->momentum +=
-            m->p[CORRECTION] * jump * determinant * J2 / (period * rig->k2 * (J2 + a));
-    }
     m->last_link = (m->momentum - a * m->angle) / J2;
     return jump;
 }
@@ -396,7 +371,6 @@ static void touch(touch_memory *m, bool felt)
     double arrival = d->landing_rate;
     if (m->mode == TRAVEL) {
         arrival = fmin(d->touch_rate, fmax(m->path_rate, d->landing_rate));
-        m->touched = (m->angle + m->last_link) / 2;
         m->plan = 0;
     }
     m->first_plan = d->hub_stiffness * arrival / (m->p[GROWTH] * d->length);
@@ -409,74 +383,59 @@ static void touch(touch_memory *m, bool felt)
     }
 }
 
-// How fast the plan changes [N/s], and what the place of touch moves by [rad/s].
-static double change_plan(touch_memory *m, bool lost, double *creep)
+// Moves the plan and the damper's rest on over a period, in contact or where it is lost.
+static void follow_plan(touch_memory *m, bool lost)
 {
     const touch_design *d = &m->design;
     const double period = m->rig.period;
-    *creep = 0;
-    if (!lost) {
-        const double grow = m->p[GROWTH] * (m->plan + m->first_plan);
-        const double end = (m->p[FORCE_WANTED] - m->plan) / m->p[RISE_TIME];
-        return d->slowness * bounded(end, -grow, grow);
+    double change, creep = 0;
+    if (lost) {
+        const double since = m->unfelt / RETURN_TIME;
+        change = -m->p[DECAY] * m->plan;
+        creep = d->landing_rate * (1 + since * since);
+        m->integral -= m->p[DECAY] / 2 * m->integral * period;
+    } else {
+        const double most = m->p[GROWTH] * (m->plan + m->first_plan);
+        change = bounded((m->p[FORCE_WANTED] - m->plan) / m->p[RISE_TIME], -most, most);
     }
-    const double since = m->unfelt / RETURN_TIME;
-    *creep = d->landing_rate * (1 + since * since);
-    m->touched += *creep * period;
-    m->integral -= m->p[DECAY] / 2 * m->integral * period;
-    m->slack = 0;
-    return -m->p[DECAY] * m->plan;
+    m->plan += change * period;
+    m->rest_rate = change * d->length / d->hub_stiffness + creep;
 }
 
-// In unbroken contact the rest takes on the hub's angle, and the integral the error.
-static void learn_in_contact(touch_memory *m, double reading)
+// In unbroken contact the integral takes on the plan's error.
+static void integrate_error(touch_memory *m, double reading)
 {
-    const touch_design *d = &m->design;
-    const double period = m->rig.period, force = fabs(m->p[FORCE_WANTED]);
+    const double length = m->design.length, force = fabs(m->p[FORCE_WANTED]);
     const double left = m->p[DEAD_BAND] * force, error = m->plan - reading;
     const double beyond = error - bounded(error, -left, left);
-    const double most = d->length * force;
-    m->slack += fmin(1, period / m->p[FORGET]) * (m->angle - m->rest);
-    m->integral =
-        bounded(m->integral + d->slowness * m->p[INTEGRAL] * d->length * beyond * period,
-                -most, most);
+    const double step = m->p[INTEGRAL] * length * beyond * m->rig.period;
+    m->integral = bounded(m->integral + step, -length * force, length * force);
 }
 
-// The torque of the hub about its rest [N m].
+// The torque of the plan, and of the damper about its rest [N m].
 static double press_torque(touch_memory *m, double reading)
 {
     const touch_design *d = &m->design;
     const controller_setup *rig = &m->rig;
-    const double period = rig->period;
+    const double before = m->rest_rate;
     const bool lost = m->unfelt > m->p[LOST];
-    if (lost && m->mode == PRESS) {
-        m->touched -= m->p[DROP];
-    }
-    m->mode = lost ? BACK : PRESS;
-
-    // the rest, with the plan and the place of touch
-    double creep;
-    const double change = change_plan(m, lost, &creep), before = m->rest_rate;
-    m->plan += change * period;
-    m->rest_rate = change * d->length / d->hub_stiffness + creep;
-    m->rest = m->touched + m->plan * d->length / d->hub_stiffness + m->slack;
-    if (m->unbroken > m->p[UNBROKEN]) {
-        learn_in_contact(m, reading);
-    }
-
-    double damping = d->press_damping, stiffness = m->p[PRESS_STIFFNESS];
+    double damping = d->press_damping;
+    m->mode = PRESS;
     if (lost) {
+        m->mode = BACK;
         damping = d->travel_damping;
-        stiffness = m->p[BACK_STIFFNESS];
     }
-    const double most = 0.3 * fabs(m->p[FORCE_WANTED]) * d->length;
+    follow_plan(m, lost);
+    if (m->unbroken > m->p[UNBROKEN]) {
+        integrate_error(m, reading);
+    }
+
+    const double most = LARGEST_INERTIAL * fabs(m->p[FORCE_WANTED]) * d->length;
     const double inertial =
-        m->p[RISE_INERTIA] * d->pressed * (m->rest_rate - before) / period;
+        m->p[RISE_INERTIA] * d->pressed * (m->rest_rate - before) / rig->period;
     return m->plan * d->length + rig->hub_damping * m->rest_rate +
-           m->p[PRESS_FRICTION] * rig->stiction *
-               bounded(m->rest_rate / FRICTION_RATE, -1, 1) +
            bounded(inertial, -most, most) + damping * (m->rest_rate - m->rate) +
-           stiffness * (m->rest - m->angle) + m->integral;
+           m->integral;
 }
 
 // --- a sample --------------------------------------------------------------------------
@@ -487,13 +446,18 @@ static void sample(void *memory, const controller_input *in, controller_output *
     const double period = m->rig.period;
     const bool felt = in->force > m->p[FELT] * m->p[THRESHOLD];
     if (!m->started) {
-        begin(m, in->encoder);
+        begin_travel(m, in->encoder);
         m->rate = in->tachometer;
     } else {
         follow_hub(m, in);
     }
-    m->unfelt = felt ? 0 : m->unfelt + period;
-    m->unbroken = felt ? m->unbroken + period : 0;
+    if (felt) {
+        m->unfelt = 0;
+        m->unbroken += period;
+    } else {
+        m->unfelt += period;
+        m->unbroken = 0;
+    }
 
     // on the way a blow counts, too
     const bool struck = m->mode == TRAVEL && is_struck(m);
@@ -509,7 +473,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
         out->calculated_force = 0;
     } else {
         torque = press_torque(m, in->force);
-        out->desired_angle = m->rest;
+        out->desired_angle = (double)NAN;
         out->desired_velocity = m->rest_rate;
         out->calculated_force = m->plan;
     }
