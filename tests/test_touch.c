@@ -2,6 +2,7 @@
 // passive hub whose rest moves.
 
 #include "src/rig/laws/laws.h"
+#include "src/study/law_exam.h"
 #include "tests/rig_fixture.h"
 
 #define TOUCH "control.law=touch"
@@ -106,6 +107,24 @@ TEST(it_follows_another_force)
                  SETS(0.8, control.force, 2), SETS(1.4, control.force, 0.5));
     KEPT_RUN(r) = run_done(&s, false);
     check_close(r.summary.steady_force_N, 0.5, 0.05);
+}
+
+// Three of four cases that nobody chose are within the bounds of the exam; of 60, less
+// than 35 would be three deviations below that.
+TEST(most_cases_are_within_the_bounds)
+{
+    const scenario s = {.name = "touch", .parameters = rig_parameters_with(TOUCH)};
+    const exam_request asked = {.base = &s,
+                                .laws = {LAW_TOUCH},
+                                .law_count = 1,
+                                .forces = {1},
+                                .force_count = 1,
+                                .cases = 60,
+                                .seed = 30000};
+    law_exam e;
+    DONE(law_exam_run(&e, &asked, &(exam_options){.jobs = 1}, &f));
+    assert_true(law_exam_share(&e, 0, 0, -1).within >= 35);
+    law_exam_finish(&e);
 }
 
 TEST(a_motor_without_torque_is_said)
