@@ -144,7 +144,7 @@ static status report_runs(void *context, bool over, fault *f)
 // Of a run and the same without a push, where open-loop touches the wall at that time
 // [s].
 static exam_verdict judge_law_run(const drawn_case *c, double force, double open_loop,
-                              const summary *s, const summary *calm)
+                                  const summary *s, const summary *calm)
 {
     // settling counts from the touch, or from a push after it
     double from = s->first_contact_s;
@@ -189,7 +189,7 @@ static void judge_law_runs(exam_work *w, size_t runs)
             const summary *calm = &w->summaries[c->push != 0 ? i + 1 : i];
             *verdict_at(e, run->law, run->force, run->of_case) =
                 judge_law_run(c, e->asked.forces[run->force], open_loop, &w->summaries[i],
-                          calm);
+                              calm);
         }
     }
 }
