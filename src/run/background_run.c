@@ -10,12 +10,12 @@ struct background_run {
     scenario scenario;
     run_options options;
     run_monitor monitor;
-    run_result
-        result; // the thread's until it is over; the places of its rows never change
+    run_result result; // written by the thread until it ends; its rows never move
     pthread_t thread;
     bool runs; // the thread has yet to be joined
 };
 
+// What the thread does: it computes the whole run.
 static void *compute(void *argument)
 {
     background_run *c = argument;
@@ -32,7 +32,7 @@ background_run *background_run_start(const scenario *s, const background_options
         return NULL;
     }
 
-    // the scenario and the rows that it begins with
+    // the scenario and its options; a run that is resumed has the rows begun earlier
     c->scenario = *s;
     c->options = (run_options){.keep_trace = true,
                                .monitor = &c->monitor,
@@ -42,12 +42,14 @@ background_run *background_run_start(const scenario *s, const background_options
         c->result = *begun;
     }
 
-    // a new thread inherits the mask of the one that starts it: signals are for that one,
-    // which waits for input; without a thread it is computed here
+    // signals are for the calling thread, which waits for input: they are blocked while
+    // the new thread is created, as that inherits the mask
     sigset_t before;
     worker_signals_block(&before);
     c->runs = !how->at_once && pthread_create(&c->thread, NULL, compute, c) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
+
+    // without a thread of its own the run is computed here
     if (!c->runs) {
         compute(c);
     }
@@ -66,7 +68,8 @@ size_t background_run_look(background_run *c, run_result *view)
 {
     size_t rows = atomic_load_explicit(&c->monitor.rows, memory_order_acquire);
 
-    // what is counted is complete and stays where it is, so the view needs no lock
+    // the rows that are counted are complete and never move, so that the view needs no
+    // lock
     if (rows > 0) {
         const trace *t = &c->result.trace;
         view->trace = (trace){.rows = t->rows,

@@ -9,7 +9,8 @@
 #include "src/scenario/effect.h"
 #include "src/tables/settings.h"
 
-// Only integers and reals are numbers, alone or in lists.
+// The value of a parameter in JSON: numbers and lists of numbers as such, booleans as
+// such, choices and texts as a scenario file would have them.
 static json_t *parameter_value(const parameters *p, int index)
 {
     const parameter_info *info = &parameter_table[index];
@@ -52,7 +53,8 @@ json_t *export_parameters(const parameters *p)
     return object;
 }
 
-// What the scenario expects, what came, and whether that is met.
+// The expectations of the scenario in JSON, each with the value that the run came to and
+// whether it meets the expectation.
 static json_t *expectations_array(const scenario *s, const run_result *result)
 {
     json_t *array = json_array();
@@ -71,10 +73,13 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
     return array;
 }
 
-// An event with what its kind has.
+// An event in JSON: time and kind, and what only some kinds have, such as the impulse of
+// an impact or the parameter that an action changed.
 static json_t *event_object(const scenario *s, const event *e)
 {
     json_t *object = json_of("t_s:n kind:t", e->time, event_name(e->kind));
+
+    // impacts and pushes
     if (e->kind == EVENT_IMPACT || e->kind == EVENT_PUSH) {
         json_put(object, "impulse_Ns", json_number(e->impulse));
     }
@@ -82,6 +87,7 @@ static json_t *event_object(const scenario *s, const event *e)
         json_members(object, "speed_m_s:n loss_J:n", e->speed, e->loss);
     }
 
+    // changes that the script made
     if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
         const action *a = &s->actions[e->index];
         char path[ACTION_PATH];
@@ -128,7 +134,8 @@ json_t *export_run(const scenario *s, const run_result *result)
     return object;
 }
 
-// Indices of the signals that have a column; returns how many those are.
+// Fills in the indices of the signals that have a column: all but optional ones without a
+// value in the run. Returns how many there are.
 static int csv_signals(const trace *t, int *columns)
 {
     int count = 0;
@@ -147,7 +154,8 @@ void export_csv(FILE *stream, const trace *t, int links)
     size_t angles = links > 2 ? (size_t)t->angle_count : 0;
     csv_writer csv = csv_begin(stream);
 
-    // headings: signals, and the angles of a beam that the signals do not show whole
+    // headings: the signals, then the angle of every link of an arm with more than two,
+    // of which the signals show the first and the last only
     for (int i = 0; i < count; i++) {
         csv_heading(&csv, signal_table[columns[i]].name, signal_table[columns[i]].unit);
     }

@@ -10,33 +10,35 @@
 
 // --- what a step is recorded as --------------------------------------------------------
 
+// Adds an event to the trace; `index` is that of an action of the script, -1 for others.
 static status record_event(recording *r, double time, event_kind kind, int index)
 {
     return trace_add_event(&r->result->trace,
                            (event){.time = time, .kind = kind, .index = index});
 }
 
-// The largest forces so far, of the run and of its first pulse: as the thesis's program
-// has it they are samples, and no parabola runs through their neighbours.
+// Notes the largest force of the run and of its first pulse. As in the thesis's program,
+// the peaks are values of rows, not maxima of parabolas between rows.
 static void note_peaks(printed_run *p, const printed_row *row)
 {
     summary *s = &p->recording->result->summary;
-    const double since = row->time - s->first_contact_s;
+    const double time_in_contact = row->time - s->first_contact_s;
     const bool largest = row->force > s->peak_force_N;
     const bool largest_of_first =
         isnan(s->first_pulse_s) && row->force > s->first_pulse_peak_N;
 
     if (largest) {
         s->peak_force_N = row->force;
-        s->time_to_peak_s = since;
+        s->time_to_peak_s = time_in_contact;
     }
     if (largest_of_first) {
         s->first_pulse_peak_N = row->force;
-        s->first_pulse_time_to_peak_s = since;
+        s->first_pulse_time_to_peak_s = time_in_contact;
     }
 }
 
-// Takes note of contact that begins or ends with the row.
+// Updates what the summary says of contact with a new row, and records the event if
+// contact begins or ends there. Penetration is the gap below zero.
 static status note_contact(printed_run *p, const printed_row *row)
 {
     recording *r = p->recording;
@@ -54,7 +56,7 @@ static status note_contact(printed_run *p, const printed_row *row)
         return STATUS_OK; // the wall is still to be met
     }
 
-    // contact begins again, or ends
+    // contact begins or ends
     note_peaks(p, row);
     if (row->contact && !was_in_contact) {
         s->impacts++;
@@ -70,14 +72,16 @@ static status note_contact(printed_run *p, const printed_row *row)
         TRY(record_event(r, row->time, EVENT_RELEASE, -1));
     }
 
+    // for the next row
     p->in_contact = row->contact;
     p->separated = p->separated || row->gap > SEPARATION_GAP;
     return STATUS_OK;
 }
 
-// What the printed equations do not keep: energies, and their listing no rate of the gap.
+// A row in which every signal is NaN. So remain those that the printed equations do not
+// have: energies, and the rate of the gap.
 #define NONE(name, ...) .name = (double)NAN,
-static const sample nothing = {SIGNALS(NONE)};
+static const sample row_without_values = {SIGNALS(NONE)};
 #undef NONE
 
 static sample present_row(const void *run)
@@ -86,7 +90,7 @@ static sample present_row(const void *run)
     const printed_row *row = &p->motion.row;
     const motor_model *motor = &p->motion.arm.motor;
 
-    sample sampled = nothing;
+    sample sampled = row_without_values;
     sampled.time = row->time;
     sampled.hub_angle = row->angle[0];
     sampled.first_angle = row->angle[1];
@@ -107,6 +111,7 @@ static sample present_row(const void *run)
     return sampled;
 }
 
+// The motion that the sensors measure at a row.
 static sensed_motion sensed_at(const printed_row *row)
 {
     return (sensed_motion){.angle = row->angle[0],
@@ -117,7 +122,7 @@ static sensed_motion sensed_at(const printed_row *row)
                            .force = row->force};
 }
 
-// Keeps the row that the motion stands at, if the run keeps rows.
+// Adds the motion's present row to the trace, if the run keeps rows.
 static status keep_row(const printed_run *p)
 {
     if (!p->recording->options->keep_trace) {
@@ -128,15 +133,15 @@ static status keep_row(const printed_run *p)
     return recording_add_row(p->recording, &sampled, row->angle, row->velocity);
 }
 
-// Records the row that the motion stands at: contact, what the sensors feel, force,
-// signals.
+// Records the motion's present row: contact, the sensors' reading of the step to it, the
+// force over that step, and its signals.
 static status record_row(printed_run *p, fault *f)
 {
     recording *r = p->recording;
     const printed_row *row = &p->motion.row;
     status failed = note_contact(p, row);
 
-    // the step to it, which the row of time 0 has none of
+    // the step to this row; to the row at time 0 it has no length
     const sensed_motion now = sensed_at(row);
     force_step step = {.start = row->time, .end = row->time, .last = row->force};
     sensed_motion before = now;
@@ -147,25 +152,25 @@ static status record_row(printed_run *p, fault *f)
     }
     step.mean = (step.first + step.last) / 2;
 
-    // what the sensors felt of it
+    // the sensors follow that step
     if (r->rig != NULL) {
         sensors_follow(&r->rig->sensors, row->time - step.start, &before, &now,
                        step.mean);
     }
 
-    // the mean force of the end
+    // the mean force over the window at the end of the run
     if (p->begun && row->time > r->scenario->parameters.run.duration - STEADY_WINDOW) {
         p->steady_sum += row->force;
         p->steady_rows++;
     }
 
-    // the row is the last one now
+    // this row is the last one of the run so far
     p->sensed = now;
     p->last = step;
     p->begun = true;
     p->ready = false;
 
-    // and is kept
+    // into force history and trace
     TRY(failed);
     TRY(force_history_add(&r->result->history.forces, step));
     TRY(keep_row(p));
@@ -176,8 +181,8 @@ static status record_row(printed_run *p, fault *f)
 
 // --- between steps ---------------------------------------------------------------------
 
-// Sets a parameter now and records that as action `index` of the script (-1: of no
-// script); it takes effect with the coming step.
+// Sets a parameter at the present row and records that as action `index` of the script,
+// -1 for an action from outside. The value takes effect with the next step.
 static status set_parameter(printed_run *p, const action *todo, int index, fault *f)
 {
     assert(todo->kind == ACTION_SET);
@@ -198,7 +203,8 @@ static status set_parameter(printed_run *p, const action *todo, int index, fault
     return failed;
 }
 
-// Samples the sensors and changes the command where the time for it has come.
+// Lets the rig sample its sensors and change its command, if it is due at the present
+// row.
 static status run_rig(printed_run *p, fault *f)
 {
     recording *r = p->recording;
@@ -206,7 +212,7 @@ static status run_rig(printed_run *p, fault *f)
         return STATUS_OK;
     }
 
-    // a new command begins at once
+    // what it does now; a new command takes effect at once
     bool changed;
     const double time = p->motion.row.time;
     status failed = rig_act(r->rig, time, &p->sensed, &changed, f);
@@ -214,11 +220,11 @@ static status run_rig(printed_run *p, fault *f)
         recording_change_command(r, time, p->sensed.angle);
     }
 
-    // the controller's command, not motor.voltage
+    // the motor has the controller's command, not motor.voltage
     motor_set_voltage(&p->motion.arm.motor, r->rig->voltage);
     TRY(failed);
 
-    // what jumps has a second row here
+    // a new sample or command is a jump, which has a second row at this instant
     const bool sampled = recording_has_new_sample(r);
     if (sampled) {
         recording_show_sample(r);
@@ -229,7 +235,8 @@ static status run_rig(printed_run *p, fault *f)
     return STATUS_OK;
 }
 
-// Carries out what is due of script and rig, once for each row.
+// Carries out the actions of the script and of the rig that are due at the present row,
+// once for each row.
 static status prepare_step(void *run, bool *ended, fault *f)
 {
     printed_run *p = run;
@@ -238,7 +245,7 @@ static status prepare_step(void *run, bool *ended, fault *f)
         return STATUS_OK;
     }
 
-    // what jumps at the last row
+    // the script, then the rig
     const scenario *s = p->recording->scenario;
     int *next = &p->recording->state.next_action;
     for (; *next < s->action_count && s->actions[*next].time <= p->motion.row.time;
@@ -250,32 +257,34 @@ static status prepare_step(void *run, bool *ended, fault *f)
     return STATUS_OK;
 }
 
-// A step cannot be cut: it ends at its row.
+// Makes the next step, to its row: a step of the printed algorithm cannot be cut.
 static status step(void *run, double until, fault *f)
 {
     printed_run *p = run;
-    (void)until;
+    (void)until; // not heeded
     TRY(printed_motion_step(&p->motion, f));
     return record_row(p, f);
 }
 
 // --- the summary -----------------------------------------------------------------------
 
+// Fills in the summary of the run so far; only a complete one has a steady force.
 static void sum_up(void *run, status failed)
 {
     printed_run *p = run;
     assert(p->begun);
+
+    // method and steps; equation (2.16) as printed conserves no energy
     recording *r = p->recording;
     summary *s = &r->result->summary;
     snprintf(s->method, sizeof s->method, "Newmark, as printed");
     s->steps = (double)p->motion.steps;
-    s->motor_work_J = s->energy_residual_J =
-        (double)NAN; // (2.16) as printed conserves no energy
+    s->motor_work_J = s->energy_residual_J = (double)NAN;
+
+    // contact: a flight that the run ends in, and the landing
     if (p->separated) {
         s->separations++;
     }
-
-    // what contact there was
     if (!isnan(s->first_contact_s)) {
         s->sensor_1ms_peak_N = force_largest_sensed(r->result, 1e-3, HUGE_VAL);
         r->result->landing = (landing){s->first_contact_s,
@@ -285,7 +294,7 @@ static void sum_up(void *run, status failed)
                                        {.angle = {(double)NAN}}};
     }
 
-    // what only a whole run has
+    // what only a complete run has
     if (failed == STATUS_OK) {
         const double duration = r->scenario->parameters.run.duration;
         double mean = 0;
@@ -313,6 +322,8 @@ static status open_run(void *run, recording *r, fault *f)
     assert(r->scenario->parameters.arm.model == ARM_PRINTED);
     *p = (printed_run){.recording = r};
     TRY(recording_open_trace(r, 3, f));
+
+    // a script with pushes is refused
     for (int i = 0; i < r->scenario->action_count; i++) {
         const action *a = &r->scenario->actions[i];
         FAULT_IF(
@@ -373,7 +384,7 @@ static size_t saved_size(const void *run)
 static void save(const void *run, void *bytes)
 {
     printed_run saved = *(const printed_run *)run;
-    saved.recording = NULL; // where that lies is no part of a state
+    saved.recording = NULL; // an address is no part of a state
     memcpy(bytes, &saved, sizeof saved);
 }
 

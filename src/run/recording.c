@@ -9,8 +9,8 @@
 #include "src/base/clock.h"
 #include "src/base/instant.h"
 
-// Sets up the rig, if the scenario has a control law; until its first command the motor
-// rests.
+// Sets up the rig if the scenario has a control law, and checks that the script suits
+// that law. Until the first command the rig puts out no voltage.
 static status start_rig(recording *r, fault *f)
 {
     assert(r->rig == NULL);
@@ -19,17 +19,19 @@ static status start_rig(recording *r, fault *f)
         return STATUS_OK;
     }
 
+    // what the summary of a rig adds up starts at zero; the printed model has no rate of
+    // the gap, and so no speeds
     r->command = (recorded_command){.hub_angle = p->initial.angle};
     r->result->summary.electrical_energy_J = 0;
-    if (p->arm.model != ARM_PRINTED) { // whose listing has no rate of the gap
+    if (p->arm.model != ARM_PRINTED) {
         r->result->summary.approach_speed_m_s = r->result->summary.return_speed_m_s = 0;
     }
-    const run_options *o = r->options;
-    const rig_options given = {
-        .law = o->law,
-        .stop = &r->stop,
-    };
+
+    // the rig, with a law that a program gives or that of the scenario
+    const rig_options given = {.law = r->options->law, .stop = &r->stop};
     TRY(rig_create(&r->rig, p, &given, f));
+
+    // the script
     TRY(scenario_check_timing(r->scenario, f));
     if (r->rig->withheld) {
         return STATUS_OK;
@@ -47,6 +49,8 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
                      .now = s->parameters,
                      .begun_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
                      .begun_at = clock_seconds(CLOCK_MONOTONIC)};
+
+    // who may stop it: the whole program, its monitor, or a flag of the caller
     r->stop = (stop_request){.flag = &stop_everything,
                              .ask = options->ask,
                              .context = options->ask_context};
@@ -55,6 +59,8 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
     } else if (options->abandon != NULL) {
         r->stop.flag = options->abandon;
     }
+
+    // an empty result, unless an earlier run is continued
     *f = (fault){.text = "", .path = ""};
     if (!options->resume) {
         memset(result, 0, sizeof *result);
@@ -64,7 +70,7 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
         all->motor_work_J = all->energy_residual_J = 0;
     }
 
-    // not even set up: an arm of a thousand links takes seconds for that
+    // a run that is to stop is not even set up, which takes seconds for a thousand links
     const bool abandoned = options->monitor == NULL && stop_is_set(&r->stop);
     if (abandoned) {
         return STATUS_STOPPED;
@@ -96,7 +102,8 @@ void recording_end(recording *r, status code, const fault *f)
 
 // --- rows and events -------------------------------------------------------------------
 
-// Room for rows is made in advance up to so many of them, some of them for events.
+// Room for rows is made in advance if they are fewer than MOST_ROWS_AHEAD. Of that room
+// ROWS_OF_EVENTS are for rows at events.
 enum { MOST_ROWS_AHEAD = 100000, ROWS_OF_EVENTS = 64 };
 
 size_t recording_most_rows(size_t expected)
@@ -115,6 +122,8 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     const double rows = ROWS_OF_EVENTS + p->run.duration / p->method.step + 2 * samples;
     const double bytes = rows * (double)trace_row_bytes(angle_count), gigabyte = 1e9;
     const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+
+    // more than the machine's memory is refused
     if ((expected > 0 || r->options->keep_trace) && bytes > memory) {
         const char *two =
             r->rig != NULL ? " and two at every sample of control.rate" : "";
@@ -124,14 +133,17 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
             "of memory, and this machine has %.3g GB",
             p->method.step, two, p->run.duration, bytes / gigabyte, memory / gigabyte);
     }
+
+    // a trace that may move as it grows; if there is no memory, adding rows will say so
     if (expected == 0) {
-        // where there is no memory, rows will say so
         trace_init(&r->result->trace, angle_count);
         if (r->options->keep_trace && rows < MOST_ROWS_AHEAD) {
             trace_expect(&r->result->trace, (size_t)rows);
         }
         return STATUS_OK;
     }
+
+    // a trace that never moves
     size_t most = recording_most_rows(expected);
     status s = trace_reserve(&r->result->trace, angle_count, expected, most);
     if (s == STATUS_OK) {
@@ -175,9 +187,9 @@ status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities)
 {
     trace *t = &r->result->trace;
-    const bool again = r->rig != NULL && recording_has_row_at(r, row->time);
+    const bool same_time = r->rig != NULL && recording_has_row_at(r, row->time);
     status s = trace_add_row(t, row, angles, velocities);
-    if (s == STATUS_OK && again) {
+    if (s == STATUS_OK && same_time) {
         t->rows[t->row_count - 1].time = t->rows[t->row_count - 2].time;
     }
     recording_publish(r, row->time);
@@ -193,7 +205,7 @@ void recording_finish_summary(recording *r, double force_integral)
         return;
     }
 
-    // overshoot and settling are relative to a force that stays
+    // the mean over the window; overshoot and settling time are relative to it
     s->steady_force_N = force_integral / fmin(STEADY_WINDOW, duration);
     if (s->steady_force_N > 0) {
         s->force_overshoot_percent = 100 * (s->peak_force_N / s->steady_force_N - 1);
@@ -209,21 +221,21 @@ void recording_finish_summary(recording *r, double force_integral)
 
 // --- the rig ---------------------------------------------------------------------------
 
-// The smoothed force: means over SMOOTHING_WINDOW [s], from SMOOTHED_AFTER first contact
-// on [s].
+// The smoothed force is the mean over a window of SMOOTHING_WINDOW [s]; its maximum
+// counts from SMOOTHED_AFTER [s] after the first contact on.
 #define SMOOTHING_WINDOW 5e-3
 #define SMOOTHED_AFTER   0.02
 
 void recording_add_rig_signals(const recording *r, sample *row)
 {
-    // before the first sample nothing is known
+    // before the first sample there are no values
     const double none = (double)NAN;
     sensor_reading reading = {none, none, none, none, none, none};
     row->command = row->controller_mode = none;
     row->desired_angle = row->desired_velocity = none;
     row->calculated_force = row->predicted_force = none;
 
-    // what the controller made of what the sensors read
+    // the last sample that is shown, and the controller's output for it
     const shown_sample *s = &r->shown;
     if (s->sampled) {
         reading = s->reading;
@@ -235,6 +247,7 @@ void recording_add_rig_signals(const recording *r, sample *row)
         row->predicted_force = s->predicted_force;
     }
 
+    // the sensors' readings
     row->encoder = reading.encoder;
     row->tachometer = reading.tachometer;
     row->force_reading = reading.force_reading;
@@ -284,7 +297,7 @@ void recording_finish_rig_summary(recording *r, double hub_angle)
         return;
     }
 
-    // energy up to the end, and what the controller made of its task
+    // electrical energy up to the end, and force and command against the commanded force
     recording_change_command(r, p->run.duration, hub_angle);
     s->largest_command_V = r->rig->largest_command;
     s->force_command_N = command;

@@ -136,12 +136,13 @@ void recording_add_rig_signals(const recording *r, sample *row);
 bool recording_has_new_sample(const recording *r);
 void recording_show_sample(recording *r);
 
-// The rig's present command takes effect at `time` [s], with the hub at hub_angle [rad]:
-// what the amplifier fed in under the one before is booked.
+// The rig's present command takes effect at `time` [s], with the hub at hub_angle [rad].
+// Adds to the summary the electrical energy that the amplifier supplied under the command
+// before.
 void recording_change_command(recording *r, double time, double hub_angle);
 
-// A parameter is about to change at `time` [s], with the hub at hub_angle [rad]: what the
-// amplifier fed in under another limit is booked.
+// A parameter is about to change at `time` [s], with the hub at hub_angle [rad]. If it is
+// the voltage limit, adds to the summary the energy supplied under the limit before.
 void recording_before_change(recording *r, const action *todo, double time,
                              double hub_angle);
 

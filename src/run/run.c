@@ -40,7 +40,7 @@ int run_check_expectations(const scenario *s, const run_result *result,
             continue;
         }
 
-        // as the editor that opens the file wants it: place, what is and what was
+        // file, line and column, as editors read them, then the value and what was
         // expected
         char sentence[512], found[64] = "nothing (null)";
         if (!isnan(value)) {
@@ -100,9 +100,11 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
         return NULL;
     }
 
-    // under a control law the voltage in force is the law's
+    // the parameters at that instant, with the voltage that was in force
     parameters now = scenario_parameters_at(s, row->time);
     now.motor.voltage = row->voltage;
+
+    // angles and velocities of all links, which only the corrected model has
     const bool known = now.arm.model == ARM_CORRECTED;
     const size_t at =
         (size_t)(row - result->trace.rows) * (size_t)result->trace.angle_count;

@@ -31,7 +31,7 @@ summary driver_summary(run_driver *d, status failed, const fault *f)
     recording *r = &d->recording;
     summary *now = &r->result->summary;
 
-    // summed up as if it ended here
+    // the run is summed up as if it ended here
     const summary summary_before = *now;
     const recording_state state_before = r->state;
     const recorded_command command_before = r->command;
@@ -39,7 +39,7 @@ summary driver_summary(run_driver *d, status failed, const fault *f)
     recording_tell_fault(now, failed, f);
     const summary all = *now;
 
-    // and continued as it was
+    // and continues as if it had not been
     *now = summary_before;
     r->state = state_before;
     r->command = command_before;
@@ -48,7 +48,9 @@ summary driver_summary(run_driver *d, status failed, const fault *f)
 
 // --- continuing ------------------------------------------------------------------------
 
-// Whether an instant is still to be gone to; the end is, until it is known to be one.
+// Whether the run still has to be advanced to reach an instant [s]. For the end of the
+// run that is so until the model has found that it ended, in which it records the last
+// row.
 static bool lies_ahead(const run_driver *d, double time)
 {
     const double duration = d->recording.scenario->parameters.run.duration;
@@ -106,7 +108,8 @@ const double *driver_state(const run_driver *d, int *angle_count)
 
 // --- the state as bytes ----------------------------------------------------------------
 
-// What has been recorded; the model, the rig's memory and its values follow.
+// The first part of a saved state: what has been recorded, and the rig. The bytes of the
+// model, of the controller's memory and of its parameter values follow.
 typedef struct saved_run {
     size_t rows, events, force_steps;
     recording_state recording;
@@ -117,6 +120,7 @@ typedef struct saved_run {
     rig rig;
 } saved_run;
 
+// The bytes of the values of the controller's parameters.
 static size_t values_size(const rig *r)
 {
     return (size_t)r->law->parameter_count * sizeof *r->values;
@@ -132,8 +136,8 @@ size_t driver_saved_size(const run_driver *d)
     return size + r->law->memory_size + values_size(r);
 }
 
-// Gives a rig the addresses of another.
-static void keep_places(rig *r, const rig *own)
+// Gives a rig the addresses that another one has; all else stays.
+static void copy_addresses(rig *r, const rig *own)
 {
     r->law = own->law;
     r->given = own->given;
@@ -146,6 +150,7 @@ static void keep_places(rig *r, const rig *own)
 
 void driver_save(const run_driver *d, void *bytes)
 {
+    // what has been recorded
     const recording *r = &d->recording;
     saved_run head;
     memset(&head, 0, sizeof head);
@@ -159,10 +164,10 @@ void driver_save(const run_driver *d, void *bytes)
     head.summary.path = NULL;
     head.now = r->now;
 
-    // where things lie is their run's own, and no part of a state
+    // the rig without its addresses, which are no part of a state
     if (r->rig != NULL) {
         head.rig = *r->rig;
-        keep_places(&head.rig, &(rig){.law = NULL});
+        copy_addresses(&head.rig, &(rig){.law = NULL});
     }
     memcpy(bytes, &head, sizeof head);
 
@@ -179,12 +184,14 @@ void driver_save(const run_driver *d, void *bytes)
     }
 }
 
-// Puts a rig back; where its law, memory, values and context lie stays.
+// Gives a rig its saved state, of which the bytes of memory and parameter values begin at
+// `at`. Its addresses stay; the memory of a law that a program gives begins with its
+// context, which stays as well.
 static void restore_rig(rig *r, const rig *saved, const char *at)
 {
     const rig own = *r;
     *r = *saved;
-    keep_places(r, &own);
+    copy_addresses(r, &own);
     memcpy(r->memory, at, r->law->memory_size);
     memcpy(r->values, at + r->law->memory_size, values_size(r));
     if (r->given.law != NULL) {
@@ -192,7 +199,7 @@ static void restore_rig(rig *r, const rig *saved, const char *at)
     }
 }
 
-static void keep_at_most(size_t *count, size_t most)
+static void limit_count(size_t *count, size_t most)
 {
     if (*count > most) {
         *count = most;
@@ -201,14 +208,14 @@ static void keep_at_most(size_t *count, size_t most)
 
 void driver_restore(run_driver *d, const void *bytes)
 {
-    // what was recorded, as far as this run has it
+    // what was recorded; rows, events and forces that came later are dropped
     recording *r = &d->recording;
     run_result *result = r->result;
     saved_run head;
     memcpy(&head, bytes, sizeof head);
-    keep_at_most(&result->trace.row_count, head.rows);
-    keep_at_most(&result->trace.event_count, head.events);
-    keep_at_most(&result->history.forces.count, head.force_steps);
+    limit_count(&result->trace.row_count, head.rows);
+    limit_count(&result->trace.event_count, head.events);
+    limit_count(&result->history.forces.count, head.force_steps);
     r->state = head.recording;
     r->command = head.command;
     r->shown = head.shown;
@@ -216,7 +223,7 @@ void driver_restore(run_driver *d, const void *bytes)
     result->summary.path = "";
     r->now = head.now;
 
-    // the rig first: the run's arm has its voltage
+    // the rig first, as the arm of the model takes its voltage from there
     const char *at = (const char *)bytes + sizeof head;
     if (r->rig != NULL) {
         restore_rig(r->rig, &head.rig, at + d->model->saved_size(&d->run));

@@ -9,24 +9,25 @@
 #include "src/rig/controller_values.h"
 #include "src/run/run_driver.h"
 
-#define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near is the present one
+// A multiple of method.step that is nearer than this share of it is the present instant.
+#define GRID_TOLERANCE 1e-9
 
 struct run_loop {
-    scenario scenario; // a copy of one's own
+    scenario scenario; // a copy
     run_options options;
     given_law law;
     run_result result;
     run_driver driver;
-    double volts; // commanded [V]
-    bool ended;
-    status failed; // what stopped it
-    fault fault;
-    uint64_t fingerprint; // of what a saved state must agree with
+    double volts;         // the command of a commanded loop [V]
+    bool ended;           // it has come to the end of the run
+    status failed;        // what stopped it before its end, if anything
+    fault fault;          // and the sentence for that
+    uint64_t fingerprint; // saved states of loops with the same one can be restored
 };
 
 // --- the controller of a commanded loop ------------------------------------------------
 
-// All it remembers is where its command stands.
+// The controller's sample function: its memory is the address of the loop's command.
 static void put_out(void *memory, const controller_input *input,
                     controller_output *output)
 {
@@ -41,7 +42,7 @@ static const controller commanded_law =
 
 // --- beginning and end -----------------------------------------------------------------
 
-// FNV-1a, a text after the other.
+// Continues a 64-bit FNV-1a hash with a text and a byte that ends it.
 static uint64_t hash_text(uint64_t hash, const char *text)
 {
     for (; *text != '\0'; text++) {
@@ -50,10 +51,12 @@ static uint64_t hash_text(uint64_t hash, const char *text)
     return (hash ^ 0xff) * 0x100000001b3u;
 }
 
-// What two loops must have in common to exchange states: the version, every parameter and
-// the script; of a controller of somebody else's, the loop itself.
+// A hash of what two loops must have in common to exchange states: the version, every
+// parameter, the script and the controller's name. A controller of somebody else may keep
+// addresses in its memory, so that its states are for the same loop only.
 static uint64_t fingerprint_of(const run_loop *l)
 {
+    // version and parameters
     const scenario *s = &l->scenario;
     char text[PARAMETER_TEXT_SIZE];
     uint64_t hash = hash_text(0xcbf29ce484222325u, lab_version());
@@ -61,6 +64,8 @@ static uint64_t fingerprint_of(const run_loop *l)
         parameter_format(&s->parameters, i, text, sizeof text);
         hash = hash_text(hash, text);
     }
+
+    // the script
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
         snprintf(text, sizeof text, "%a %d %d %a", a->time, (int)a->kind, a->parameter,
@@ -68,6 +73,7 @@ static uint64_t fingerprint_of(const run_loop *l)
         hash = hash_text(hash_text(hash, text), a->text);
     }
 
+    // the controller
     const rig *r = l->driver.recording.rig;
     const bool foreign =
         r != NULL && r->law != &commanded_law &&
@@ -89,7 +95,7 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
         return fault_no_memory(f);
     }
 
-    // whose command the rig puts out
+    // the controller: the program's command, a law that it gives, or control.law
     if (s->parameters.control.law == LAW_NONE) {
         l->volts = s->parameters.motor.voltage;
     } else {
@@ -139,8 +145,9 @@ bool loop_ended(const run_loop *l)
     return l->ended;
 }
 
-// Keeps what ended the run and says it; one that was only stopped can go on.
-static status stay_failed(run_loop *l, fault *f)
+// Says in f what ended the run, in every call after that. A stop on request is reported
+// once and then forgotten, so that the run can continue.
+static status report_failure(run_loop *l, fault *f)
 {
     const status code = l->failed;
     if (code != STATUS_OK && l->fault.code == STATUS_OK) {
@@ -149,6 +156,8 @@ static status stay_failed(run_loop *l, fault *f)
     if (code != STATUS_OK) {
         *f = l->fault;
     }
+
+    // a stop on request
     if (code == STATUS_STOPPED) {
         l->failed = STATUS_OK;
         l->fault = (fault){.text = "", .path = ""};
@@ -162,7 +171,7 @@ status loop_until(run_loop *l, double time, fault *f)
     if (l->failed == STATUS_OK) {
         l->failed = driver_advance(&l->driver, time, &l->ended, &l->fault);
     }
-    return stay_failed(l, f);
+    return report_failure(l, f);
 }
 
 status loop_step(run_loop *l, fault *f)
@@ -170,7 +179,8 @@ status loop_step(run_loop *l, fault *f)
     const rig *on = l->driver.recording.rig;
     const double interval = l->driver.recording.now.method.step;
 
-    // the next multiple of the step, or what the rig does now and then its next sample
+    // the next multiple of the step or, with a rig, its next sample after that which it
+    // takes now; a model that stops at rows goes on to a row at least
     double next = (floor(loop_time(l) / interval + GRID_TOLERANCE) + 1) * interval;
     if (on != NULL && l->failed == STATUS_OK && !l->ended) {
         l->failed = driver_prepare_step(&l->driver, &l->ended, &l->fault);
@@ -189,12 +199,15 @@ void loop_command(run_loop *l, double volts)
     l->volts = volts;
 }
 
-// Carries out an input; one that is refused changes nothing.
+// Carries out an action from outside at the present instant; one that is refused changes
+// nothing.
 static status act(run_loop *l, const action *todo, fault *f)
 {
     if (l->failed != STATUS_OK) {
-        return stay_failed(l, f);
+        return report_failure(l, f);
     }
+
+    // what cannot be done in this run
     FAULT_IF(todo->kind == ACTION_PUSH && !l->driver.model->takes_pushes, f,
              STATUS_BAD_ARGUMENT, "the printed model takes no pushes");
     if (todo->kind == ACTION_SET &&
@@ -205,7 +218,7 @@ static status act(run_loop *l, const action *todo, fault *f)
                             path);
     }
 
-    // tried on a copy, with what the rig will say
+    // it is tried on a copy of the parameters, and the rig checks that
     parameters tried = l->driver.recording.now;
     if (todo->kind == ACTION_SET) {
         TRY(parameter_may_change(&tried, todo->parameter, f));
@@ -218,14 +231,16 @@ static status act(run_loop *l, const action *todo, fault *f)
         TRY(rig_takes(on, &tried, f));
         TRY(parameters_check_timing(&tried, f));
     }
+
+    // then it is done; a wall that would be behind the arm is refused here
     const status code = driver_act(&l->driver, todo, &l->fault);
-    if (code == STATUS_BAD_SCENARIO) { // a wall that would be behind the arm
+    if (code == STATUS_BAD_SCENARIO) {
         *f = l->fault;
         l->fault = (fault){0};
         return code;
     }
     l->failed = code;
-    return stay_failed(l, f);
+    return report_failure(l, f);
 }
 
 status loop_set_number(run_loop *l, int parameter, double value, fault *f)
@@ -315,9 +330,9 @@ const scenario *loop_scenario(const run_loop *l)
 
 // --- the state as bytes ----------------------------------------------------------------
 
-// The head of a saved state; the run follows.
+// The first part of a saved state; the bytes of the driver follow.
 typedef struct saved_head {
-    uint64_t check; // of all that follows it
+    uint64_t check; // check_of all bytes that follow it
     uint64_t fingerprint;
     size_t size;
     bool ended;
@@ -329,9 +344,9 @@ size_t loop_saved_size(const run_loop *l)
     return sizeof(saved_head) + driver_saved_size(&l->driver);
 }
 
-// A number that other bytes behind the head's `check` would not give, but for one in
-// 2^64: eight bytes a turn are mixed in as by FNV-1a, and the upper half down into the
-// lower one.
+// A 64-bit checksum of the bytes after the head's `check`; other bytes have the same one
+// by chance only, once in 2^64. Eight bytes at a time are mixed in as by FNV-1a, and then
+// the upper half of the sum into the lower one.
 static uint64_t check_of(const char *bytes, size_t size)
 {
     uint64_t check = 0xcbf29ce484222325u;
@@ -364,6 +379,7 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
     FAULT_IF(on != NULL && on->process != NULL, f, STATUS_BAD_ARGUMENT,
              "a program as the controller cannot go back to a saved state");
 
+    // the bytes must be a whole state of this loop
     saved_head head;
     FAULT_IF(size != loop_saved_size(l), f, STATUS_BAD_ARGUMENT,
              "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l),
@@ -375,6 +391,7 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
     FAULT_IF(head.check != check_of(bytes, size), f, STATUS_BAD_ARGUMENT,
              "the state is damaged, expected the bytes as they were saved");
 
+    // go back to it
     l->volts = head.volts;
     l->ended = head.ended;
     l->failed = STATUS_OK;

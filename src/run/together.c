@@ -13,37 +13,37 @@
 #include "src/run/run.h"
 #include "src/engines/pair/taylor_lanes.h"
 
-// So many runs are in hand at once: enough to fill the vectors with steps of one form,
-// eight lanes to 96 %, few enough to stay in the second cache.
+// The number of runs in progress at once: enough to fill the vectors with steps of one
+// form (eight lanes to 96 %), few enough to stay in the second-level cache.
 enum { IN_HAND = 24 };
 
-enum { SUMMARY_SHARE = 128 }; // of the summary, what steps add to [bytes]
+// The bytes of the summary that steps write to, from its first number on.
+enum { SUMMARY_SHARE = 128 };
 
 // One of the runs that go side by side.
 typedef struct side_run {
     recording recording;
     arm_run run;
     fault fault;
-    taylor_lane *lane; // its part in the series of the step it is to make
-    int kind;          // that of its form
-    motion
-        *motion; // of the run before, NULL if there was none: its storage is used again
-    shared_array forces; // and that run's forces, if there was one
+    taylor_lane *lane;   // its lane in the series of the step that it is to make
+    int kind;            // the kind of that step: steps of one kind go together
+    motion *motion;      // storage of the run before it, to be used again; NULL: none
+    shared_array forces; // the same of that run's forces
 } side_run;
 
 struct side_by_side {
     const scenario *scenarios;
-    run_options options; // of all
-    run_result *results;
-    int count, next;      // of them, and the next one to begin
-    int waiting[IN_HAND]; // places of those in hand, all of which wait for their series
-    int waiting_count;
-    int alike[TAYLOR_KINDS]; // how many of them are of each kind
+    run_options options;     // of all runs
+    run_result *results;     // one for each scenario
+    int count, next;         // number of scenarios, and the next one to begin
+    int waiting[IN_HAND];    // queue of the places in in_hand that wait for their series
+    int waiting_count;       // length of that queue
+    int alike[TAYLOR_KINDS]; // how many in the queue are of each kind
     side_run in_hand[IN_HAND];
-    taylor_group series; // of those whose steps are being made
+    taylor_group series; // of the runs that step together
 };
 
-// Ends a run, whose storage is for the next one in its place.
+// Ends a run and puts its storage aside for the next one in its place.
 static void end_run(side_run *one, status failed)
 {
     shared_array *forces = &one->recording.result->history.forces;
@@ -56,10 +56,11 @@ static void end_run(side_run *one, status failed)
     recording_end(&one->recording, failed, &one->fault);
 }
 
-// Begins a run, in the storage of the one before.
+// Begins a run in the storage of the one before it.
 static status begin_run(side_run *one, const scenario *s, const run_options *options,
                         run_result *result)
 {
+    // the recording, with the forces' storage
     one->run.motion = NULL;
     one->run.path = NULL;
     const status failed =
@@ -68,12 +69,15 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
     result->history.forces.count = 0;
     one->forces = (shared_array){0};
     TRY(failed);
+
+    // the arm, in the motion's storage
     motion *spare = one->motion;
     one->motion = NULL;
     return arm_run_open(&one->run, &one->recording, spare, &one->fault);
 }
 
-// Whether the next step of a run is to be computed from a series, and prepares that.
+// Prepares the lane of a run's next step in a series, if that step can be computed so.
+// Returns whether it can.
 static bool needs_series(side_run *one)
 {
     arm_run *run = &one->run;
@@ -85,14 +89,15 @@ static bool needs_series(side_run *one)
     return one->lane != NULL;
 }
 
-// Continues with a run, what came last having come to `failed`, until it waits for series
-// that can be computed together with others'. False if it is over: it is closed then.
+// Continues a run, whose last step returned `failed`, until its next step needs a series;
+// then it waits in the queue, as series of several runs are computed together. False if
+// the run is over; it has been ended then.
 static bool continue_run(side_by_side *group, int place, status failed)
 {
     side_run *one = &group->in_hand[place];
     bool ended = false;
 
-    // steps that need no series are taken at once, one that does waits for company
+    // steps that need no series are made at once
     while (failed == STATUS_OK && !ended) {
         failed = arm_run_prepare_step(&one->run, &ended, &one->fault);
         if (failed == STATUS_OK && !ended) {
@@ -110,7 +115,7 @@ static bool continue_run(side_by_side *group, int place, status failed)
     return false;
 }
 
-// Asks for the cache lines of so many bytes.
+// Prefetches the cache lines of a block of memory for writing.
 static inline void fetch(const void *from, size_t size)
 {
     for (size_t at = 0; at < size; at += CACHE_LINE) {
@@ -118,8 +123,8 @@ static inline void fetch(const void *from, size_t size)
     }
 }
 
-// Asks for what the next step of a run will touch: the series of others have taken its
-// place in the nearest cache.
+// Prefetches the memory that the next step of a run will use, which the series of other
+// runs have displaced from the first-level cache.
 static void fetch_run(const side_run *one)
 {
     const arm_run *run = &one->run;
@@ -140,7 +145,7 @@ static void fill_place(side_by_side *group, int place)
     side_run *one = &group->in_hand[place];
     bool waits = false;
 
-    // the printed model has nothing to wait for and is run here
+    // a run of the printed model never waits and is computed here as a whole
     while (!waits && group->next < group->count) {
         const scenario *s = &group->scenarios[group->next];
         run_result *result = &group->results[group->next++];
@@ -154,8 +159,8 @@ static void fill_place(side_by_side *group, int place)
     }
 }
 
-// The kind that most share, of those of the first in the queue; one that fills the
-// vectors is enough.
+// The kind of step of which most runs wait, among the kinds of the first few in the
+// queue. The first kind that fills the vectors is taken.
 static int most_common_kind(const side_by_side *group, int width)
 {
     enum { LOOKED_AT = 4 };
@@ -170,14 +175,15 @@ static int most_common_kind(const side_by_side *group, int width)
     return kind;
 }
 
-// Takes as many of those that wait as fit into the vectors and are of the form that most
-// of the first few have, computes their series, and lets them make their steps.
+// Takes the runs that are to step together out of the queue: those of the most common
+// kind, as many as fit into the vectors. Computes their series, lets them make their
+// steps, and continues each by itself until it waits again.
 static void step_together(side_by_side *group)
 {
     const int width = taylor_width();
     const int kind = most_common_kind(group, width);
 
-    // out of the queue, whose order stays
+    // out of the queue, in which the others keep their order
     taylor_lane *lanes[TAYLOR_WIDEST];
     int chosen[TAYLOR_WIDEST], count = 0, left = 0, next = 0;
     const int wanted = group->alike[kind] < width ? group->alike[kind] : width;
@@ -195,7 +201,7 @@ static void step_together(side_by_side *group)
     memmove(group->waiting + left, group->waiting + next,
             (size_t)(group->waiting_count - left) * sizeof *group->waiting);
 
-    // side by side to the ends of their steps
+    // the series of all, then how far each step goes, and the state at its end
     taylor_end ends[TAYLOR_WIDEST];
     taylor_compute(&group->series, lanes, count);
     for (int i = 0; i < count; i++) {
@@ -210,7 +216,7 @@ static void step_together(side_by_side *group)
     }
     taylor_finish(&group->series, lanes, ends, count);
 
-    // then each continues by itself or makes room
+    // each makes its step and continues, or makes room for the next scenario
     for (int i = 0; i < count; i++) {
         side_run *one = &group->in_hand[chosen[i]];
         if (!continue_run(group, chosen[i],
@@ -220,7 +226,7 @@ static void step_together(side_by_side *group)
     }
 }
 
-// The storage of the calls so far, or new one; NULL without memory.
+// The storage that earlier calls have left, or a new one; NULL without memory.
 static side_by_side *open_storage(side_by_side **storage)
 {
     if (*storage == NULL) {
@@ -249,6 +255,8 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
     const run_options options = {.abandon = abandon};
     const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
                  at = clock_seconds(CLOCK_MONOTONIC);
+
+    // without vectors, or without memory: one run after the other
     side_by_side *group = taylor_width() > 1 ? open_storage(storage) : NULL;
     if (group == NULL) {
         for (int i = 0; i < count; i++) {
@@ -257,6 +265,7 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
         return;
     }
 
+    // all places are filled, and refilled until no scenario is left
     group->scenarios = scenarios;
     group->options = options;
     group->results = results;
@@ -270,7 +279,7 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
         step_together(group);
     }
 
-    // nobody can say whose time it was
+    // time cannot be told apart by runs: each gets an equal share
     const double cpu_share = (clock_seconds(CLOCK_THREAD_CPUTIME_ID) - cpu) / count;
     const double share = (clock_seconds(CLOCK_MONOTONIC) - at) / count;
     for (int i = 0; i < count; i++) {

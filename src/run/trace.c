@@ -28,8 +28,8 @@ const char *event_description(int kind)
     return NULL;
 }
 
-// Plain arrays move as they grow: where the four lie now.
-static void find_places(trace *t)
+// Updates the addresses of the trace's four arrays, which may move as they grow.
+static void update_addresses(trace *t)
 {
     t->rows = t->arrays[TRACE_ROWS].base;
     t->velocities = t->arrays[TRACE_VELOCITIES].base;
@@ -50,6 +50,7 @@ void trace_init(trace *t, int angle_count)
 
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
 {
+    // address space for each array
     bool room = true;
     trace_init(t, angle_count);
     for (int i = 0; i < TRACE_ARRAYS && room; i++) {
@@ -59,7 +60,7 @@ status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
         trace_finish(t);
         return STATUS_NO_MEMORY;
     }
-    find_places(t);
+    update_addresses(t);
     return STATUS_OK;
 }
 
@@ -81,7 +82,7 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
             return STATUS_NO_MEMORY;
         }
     }
-    find_places(t);
+    update_addresses(t);
     t->row_count = rows;
     t->event_count = events;
     return STATUS_OK;
@@ -89,12 +90,12 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 
 bool trace_expect(trace *t, size_t rows)
 {
-    bool grown = true; // the angles last: the velocities have their room then
+    bool grown = true; // the angles come last: if they have room, so have the velocities
     for (int i = 0; i < TRACE_EVENTS && grown; i++) {
         grown = shared_array_grow(&t->arrays[i], rows);
     }
     if (t->arrays[TRACE_ROWS].reserved == 0) {
-        find_places(t);
+        update_addresses(t);
     }
     return grown;
 }
@@ -109,6 +110,7 @@ status trace_add_row(trace *t, const sample *row, const double *angles,
         return STATUS_NO_MEMORY;
     }
 
+    // the row, and the angles and velocities of all links
     t->rows[t->row_count] = *row;
     double *to_angles = t->angles + t->row_count * n,
            *to_rates = t->velocities + t->row_count * n;
@@ -213,7 +215,9 @@ bool trace_has(const trace *t, int signal)
 
 // --- statistics ------------------------------------------------------------------------
 
-// Takes a straight piece from one value to another into the sums.
+// Adds a piece of a signal, of this width [s] and straight from a to b, to the
+// statistics: its integral is (a + b) / 2 and that of its square (a^2 + a b + b^2) / 3,
+// times the width. A piece without a value is left out.
 static void add_piece(signal_statistics *s, double *squares, double width, double a,
                       double b)
 {
@@ -236,7 +240,7 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
     from = fmax(t->rows[0].time, fmin(from, end));
     to = fmax(from, fmin(to, end));
 
-    // from row to row, the first and the last piece cut
+    // the pieces between rows, of which the first and the last are cut
     size_t r = trace_row_at(t, from);
     for (; r + 1 < t->row_count && t->rows[r].time <= to; r++) {
         const double t0 = t->rows[r].time, t1 = t->rows[r + 1].time;
@@ -252,7 +256,7 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
         add_piece(&s, &squares, stop - begin, a, b);
     }
 
-    // at the end, or where pieces have no value, the row itself
+    // without a piece that has a value, that of the row itself, if it has one
     if (isinf(s.minimum)) {
         const double value = signal_value(&t->rows[trace_row_at(t, from)], signal);
         add_piece(&s, &squares, 0, value, value);
@@ -262,7 +266,7 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
         return (signal_statistics){none, none, none, none, none, 0};
     }
 
-    // of an instant the value itself
+    // means over the duration; of an instant, the value itself
     if (s.duration > 0) {
         s.mean = s.integral / s.duration;
     } else {
@@ -282,6 +286,8 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
                      fault *f)
 {
     assert(signal < signal_count);
+
+    // the table's columns of time and of the signals it has
     static const double none[1] = {0};
     double *columns[SIGNALS_AT_MOST] = {NULL};
     size_t numbers = 0;
@@ -301,7 +307,7 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
         }
     }
 
-    // what was not measured has no value
+    // a row for each of the table; a signal without a column has no value
     for (size_t r = 0; r < table->rows && code == STATUS_OK; r++) {
         double row[SIGNALS_AT_MOST];
         sample measured;
@@ -311,7 +317,9 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
             } else {
                 row[i] = (double)NAN;
             }
-            numbers += i > 0 && isfinite(row[i]);
+            if (i > 0 && isfinite(row[i])) {
+                numbers++;
+            }
         }
         memcpy(&measured, row, sizeof measured);
         code = trace_add_row(t, &measured, none, none);
