@@ -1,5 +1,5 @@
-// The actions of a script: their order, and what they set; what is another than in the
-// file.
+// The actions of a script: their order, what they set, and whether they go with the
+// parameters. Also what the parameters are at an instant of the script.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -18,7 +18,7 @@ void scenario_insert_action(scenario *s, action a)
     s->actions[i] = a;
 }
 
-// Whether it gives one number of control.settings a value.
+// Whether the action sets a single number of control.settings: its text is then ".NAME".
 static bool is_setting(const action *a)
 {
     return a->parameter == PARAMETER_INDEX(control.settings) && a->text[0] == '.';
@@ -31,7 +31,7 @@ action action_of(double time, const parameters *p, int parameter, const char *te
                 .parameter = parameter,
                 .value = parameter_get(p, parameter)};
 
-    // one of the settings stays one, whatever the others will be
+    // a single setting is kept by its name, so that the action leaves the others alone
     if (parameter == PARAMETER_INDEX(control.settings) && text[0] == '.') {
         snprintf(a.text, sizeof a.text, "%.*s", (int)strcspn(text, "="), text);
         settings_get(p, a.text + 1, &a.value);
@@ -88,7 +88,7 @@ void action_format_value(const action *a, char *text, size_t size)
         return;
     }
 
-    // by way of a parameter, so that it reads as in a scenario file
+    // as a parameter with that value, so that it reads as in a scenario file
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     action_give(a, &p, NULL);
@@ -120,7 +120,7 @@ status scenario_check_timing(const scenario *s, fault *f)
         const double time = s->actions[i].time;
         TRY(action_apply(&s->actions[i], &now, f));
 
-        // those of one instant go together
+        // actions at one instant count together, so that the last of them is checked
         fault wrong;
         const bool last = i + 1 == s->action_count || s->actions[i + 1].time > time;
         if (last && parameters_check_timing(&now, &wrong) != STATUS_OK) {

@@ -13,14 +13,14 @@
 
 // --- features of a scenario ------------------------------------------------------------
 
-// Whether an action happens, and sets a parameter.
+// Whether an action sets a parameter before the run ends.
 static bool sets(const scenario *s, const action *a, int parameter)
 {
     return a->kind == ACTION_SET && a->parameter == parameter &&
            a->time <= s->parameters.run.duration;
 }
 
-// Some features, if a condition holds.
+// The features `bits` if a condition holds, else none.
 static feature_set when(bool condition, feature_set bits)
 {
     if (condition) {
@@ -29,7 +29,9 @@ static feature_set when(bool condition, feature_set bits)
     return 0;
 }
 
-// Which of its engines the event method integrates with, as far as it may choose.
+// The features that say which of its engines the event method integrates with: PAIR where
+// the fast engine for two links can take the arm, STIFF where the general one takes it.
+// Both are set where the choice matters.
 static feature_set engine_features(const parameters *p, feature_set features)
 {
     const bool able = features_suit_pair(features);
@@ -40,25 +42,32 @@ static feature_set engine_features(const parameters *p, feature_set features)
         return HAS(STIFF) | when(able, HAS(PAIR));
     }
 
-    // the engine `pair`, unless the arm itself is beyond it
+    // the engine `pair`, unless method.engine = auto and the arm's values are beyond it
     arm a;
     arm_init(&a, p);
     const bool chosen = p->method.engine == ENGINE_AUTO && !motion_suits_pair(&a);
     return HAS(PAIR) | when(chosen, HAS(STIFF));
 }
 
-// Whether a law has a parameter control.NAME and reads it; of one from outside nobody
-// knows.
+// Whether a law has a parameter control.NAME and reads it. A law from outside (plug-in or
+// process) may read any.
 static bool law_reads(int law, const char *name)
 {
-    char word[ACTION_PATH];
     const controller *own = controller_of(law);
+    if (own == NULL) {
+        return true;
+    }
+
+    // `ignored` lists names with blanks around each
+    char word[ACTION_PATH];
     snprintf(word, sizeof word, " %s ", name);
-    return own == NULL || (controller_find_parameter(own, name) >= 0 &&
-                           strstr(control_law_table[law].ignored, word) == NULL);
+    return controller_find_parameter(own, name) >= 0 &&
+           strstr(control_law_table[law].ignored, word) == NULL;
 }
 
-// What a parameter control.NAME is to the law.
+// The features of one parameter control.NAME under the law in force: whether the law
+// reads it, and whether it is the only one to give its value, as control.settings may
+// replace it.
 static feature_set own_features(const parameters *p, int parameter)
 {
     const char *name = strchr(parameter_table[parameter].path, '.') + 1;
@@ -67,16 +76,20 @@ static feature_set own_features(const parameters *p, int parameter)
     return when(law_reads(p->control.law, name), HAS(READ)) | when(!replaced, HAS(ALONE));
 }
 
+// The features that follow from the control law: which values of the arm it is told,
+// whether its mode can be held, and how it uses the commanded force.
 static feature_set law_features(const scenario *s, const parameters *p)
 {
     const control_law_info *law = &control_law_table[p->control.law];
     const controller *own = controller_of(p->control.law);
+
+    // whether the script changes the commanded force
     bool steps = false;
     for (int i = 0; i < s->action_count; i++) {
         steps = steps || sets(s, &s->actions[i], PARAMETER_INDEX(control.force));
     }
 
-    // with a limit the rig predicts the force of a touch, by the same model
+    // with a force limit the rig predicts the force of a touch, from what the law is told
     const bool forecasts = p->control.law != LAW_NONE && p->control.force_limit > 0;
     const bool moves = steps || p->control.force_amplitude > 0;
     return law->told | when(moves, law->told_where_force_moves) |
@@ -88,7 +101,7 @@ static feature_set law_features(const scenario *s, const parameters *p)
 
 // --- effects ---------------------------------------------------------------------------
 
-// Why a parameter has no effect as long as the parameters are these.
+// Why a parameter has no effect while the parameters are `p`; NULL if it has one.
 static const char *inert_with(const scenario *s, const parameters *p, int parameter)
 {
     const feature_set own = features_of(p);
@@ -97,7 +110,8 @@ static const char *inert_with(const scenario *s, const parameters *p, int parame
                           parameter);
 }
 
-// The path that action `first` of the script sets, or that of a parameter if that is -1.
+// The path that action `first` of the script sets; for first = -1, the start of the run,
+// the path of the parameter.
 static const char *path_set(const scenario *s, int parameter, int first,
                             char path[ACTION_PATH])
 {
@@ -107,8 +121,8 @@ static const char *path_set(const scenario *s, int parameter, int first,
     return action_path(&s->actions[first], path);
 }
 
-// Whether an action gives another value to what action `first` sets, or to a parameter if
-// that is -1.
+// Whether an action replaces the value that action `first` of the script has set (-1:
+// that of the parameter at the start), which it does if it sets the same path.
 static bool sets_again(const scenario *s, const action *a, int parameter, int first)
 {
     char path[ACTION_PATH], again[ACTION_PATH];
@@ -116,8 +130,8 @@ static bool sets_again(const scenario *s, const action *a, int parameter, int fi
            strcmp(action_path(a, again), path_set(s, parameter, first, path)) == 0;
 }
 
-// Whether other actions follow at the instant of action i (-1: the start), with which it
-// goes together.
+// Whether more actions follow at the instant of action i (-1: at the start), so that only
+// the values after the last of them count.
 static bool others_at_once(const scenario *s, int i)
 {
     double now = 0;
@@ -135,7 +149,8 @@ const char *effect_none_from(const scenario *s, int parameter, int first)
         why = "the script gives it another value at once";
     }
 
-    // from the start on, until it gets another value or the run ends
+    // follow the script from the start until the value is replaced or the run ends; the
+    // value is in force from action `first` on
     parameters p = s->parameters;
     for (int i = -1; i < s->action_count; i++) {
         if (i >= 0) {
@@ -174,7 +189,8 @@ const char *effect_none(const scenario *s, int parameter)
     return why;
 }
 
-// Whether a place, among the parameters and then the actions, gives a parameter a value.
+// Places count the parameters and after them the actions of the script. Whether a place
+// gives a parameter a value.
 static bool gives_value(const scenario *s, int place)
 {
     if (place < parameter_count) {
@@ -183,8 +199,9 @@ static bool gives_value(const scenario *s, int place)
     return s->actions[place - parameter_count].kind == ACTION_SET;
 }
 
-// What is given there: whether that has no effect, and why.
-static bool look_at(const scenario *s, int place, idle_value *idle)
+// Whether the value that is given at a place has no effect. Fills in why, its path and
+// its line in the file.
+static bool is_idle(const scenario *s, int place, idle_value *idle)
 {
     if (place < parameter_count) {
         idle->why = effect_none_from(s, place, -1);
@@ -203,8 +220,8 @@ static bool look_at(const scenario *s, int place, idle_value *idle)
 bool effect_next_idle(const scenario *s, int *place, idle_value *idle)
 {
     while (*place < parameter_count + s->action_count) {
-        const int here = (*place)++;
-        if (gives_value(s, here) && look_at(s, here, idle)) {
+        const int present_place = (*place)++;
+        if (gives_value(s, present_place) && is_idle(s, present_place, idle)) {
             return true;
         }
     }

@@ -38,17 +38,18 @@ __attribute__((format(printf, 1, 2))) static char *text_of(const char *format, .
     return text;
 }
 
-// Whether a call that failed says that there is nothing of that name.
+// Whether the errno of a failed call says that there is nothing of that name.
 static bool is_missing(int reason)
 {
     return reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG ||
            reason == ELOOP;
 }
 
-// What a name is of; what cannot be looked at may be anything.
+// What a path leads to: HIDDEN is what may not be looked at, which may be anything. Bits,
+// so that several can be asked for at once.
 enum { NOTHING = 1, FOLDER = 2, FILE_OR_LIKE = 4, HIDDEN = 8 };
 
-static int kind_of(const char *path)
+static int kind_of_path(const char *path)
 {
     struct stat information;
     if (stat(path, &information) == 0) {
@@ -65,14 +66,13 @@ static int kind_of(const char *path)
 
 static bool is_folder(const char *path)
 {
-    return kind_of(path) == FOLDER;
+    return kind_of_path(path) == FOLDER;
 }
 
-// Whether there is a file of that name, or what cannot be looked at: its reader will
-// tell.
+// Whether a path leads to a file, or may do so: reading it will show what is wrong.
 static bool is_file(const char *path)
 {
-    return (kind_of(path) & (FILE_OR_LIKE | HIDDEN)) != 0;
+    return (kind_of_path(path) & (FILE_OR_LIKE | HIDDEN)) != 0;
 }
 
 // ---- reading --------------------------------------------------------------------------
@@ -83,10 +83,10 @@ static status report_no_memory(fault_handler report, void *context)
     return STATUS_NO_MEMORY;
 }
 
-// Reports a sentence, printf-like. Returns `code`; STATUS_NO_MEMORY where there is none
-// for it.
+// Reports a sentence, printf-like. Returns `code`, or STATUS_NO_MEMORY if there is no
+// memory for the sentence.
 __attribute__((format(printf, 4, 5))) static status
-tell(fault_handler report, void *context, status code, const char *format, ...)
+report_sentence(fault_handler report, void *context, status code, const char *format, ...)
 {
     char *sentence;
     va_list args;
@@ -101,13 +101,13 @@ tell(fault_handler report, void *context, status code, const char *format, ...)
     return code;
 }
 
-// What is wrong with a file as a whole.
+// Reports what is wrong with a file as a whole, at its beginning.
 static status report_file(scenario *s, const char *path, const char *what,
                           fault_handler report, void *context)
 {
     s->refused = (fault_place){1, 1, NULL};
-    return tell(report, context, STATUS_CANNOT_READ,
-                "%s:1:1: %s, expected a scenario file", path, what);
+    return report_sentence(report, context, STATUS_CANNOT_READ,
+                           "%s:1:1: %s, expected a scenario file", path, what);
 }
 
 status scenario_read(scenario *s, const char *path, const char *name,
@@ -125,7 +125,7 @@ status scenario_read(scenario *s, const char *path, const char *name,
         return report_no_memory(report, context);
     }
     if (why.code == STATUS_BAD_ARGUMENT) {
-        return tell(report, context, why.code, "'%s' %s", path, why.text);
+        return report_sentence(report, context, why.code, "'%s' %s", path, why.text);
     }
     if (text == NULL) {
         return report_file(s, path, why.text, report, context);
@@ -148,6 +148,7 @@ bool scenario_is(const char *path)
 
 // ---- the folder -----------------------------------------------------------------------
 
+// Appends a copy of the first `length` bytes of a name to the list. False without memory.
 static bool add_name(name_list *list, const char *name, size_t length)
 {
     char **grown = realloc(list->names, (size_t)(list->count + 1) * sizeof *grown);
@@ -171,24 +172,24 @@ static void free_names(char **names, int count)
     free(names);
 }
 
-// The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that
-// ship. STATUS_CANNOT_READ if one is not there, all are named nevertheless.
-// STATUS_NO_MEMORY, and then none is: a folder less would be another scenario of the same
-// name.
+// Lists the folders of scenarios in the order of search: those of IMPACTLAB_SCENARIOS,
+// then the one that ships. STATUS_CANNOT_READ if one of them does not exist; the list is
+// complete nevertheless. STATUS_NO_MEMORY leaves the list empty, as with one folder less
+// a name could mean another scenario.
 static status name_folders(name_list *all, fault *f)
 {
     const char *chosen = getenv("IMPACTLAB_SCENARIOS");
     bool good = true;
     *all = (name_list){0};
 
-    // the user's
+    // the user's, with colons between them
     while (good && chosen != NULL && *chosen != '\0') {
         size_t length = strcspn(chosen, ":");
         good = length == 0 || add_name(all, chosen, length);
         chosen += length + (chosen[length] == ':');
     }
 
-    // the one that ships comes last, behind all that the user has
+    // the one that ships comes last
     char *shipped = good ? shipped_path(SHIPPED_SCENARIOS) : NULL;
     good = shipped != NULL && add_name(all, shipped, strlen(shipped));
     free(shipped);
@@ -198,11 +199,11 @@ static status name_folders(name_list *all, fault *f)
         return fault_no_memory(f);
     }
 
-    // those that were named are enough
+    // all must exist, but for the one that ships if the user has others
     status result = STATUS_OK;
     for (int i = 0; i < all->count && result == STATUS_OK; i++) {
         const bool needed = i < all->count - 1 || i == 0;
-        if (needed && (kind_of(all->names[i]) & (FILE_OR_LIKE | NOTHING)) != 0) {
+        if (needed && (kind_of_path(all->names[i]) & (FILE_OR_LIKE | NOTHING)) != 0) {
             result = fault_set(f, STATUS_CANNOT_READ,
                                "%.500s: no such folder, expected the scenarios there "
                                "(IMPACTLAB_SCENARIOS adds folders, separated by colons)",
@@ -212,8 +213,8 @@ static status name_folders(name_list *all, fault *f)
     return result;
 }
 
-// The file of that name in the first folder that has it, else in the last; NULL without
-// memory.
+// The path of a file in the first folder that has it; in the last folder if none has it.
+// NULL without memory, or without a list of folders.
 static char *find_file(const char *name, const char *ending)
 {
     name_list all;
@@ -233,12 +234,13 @@ char *scenario_folder_file(const char *name)
     return find_file(name, "");
 }
 
-static const char no_scenarios[] = "recipes"; // a folder of what belongs to figures
+// A folder among the scenarios that holds none: the recipes of figures.
+static const char no_scenarios[] = "recipes";
 
 static status walk(name_list *list, const char *folder, const char *prefix, int depth,
                    fault *f);
 
-// Why a folder's scenarios are not known.
+// Reports that a folder cannot be listed, for the reason in errno.
 static status cannot_list(const char *folder, fault *f)
 {
     if (errno == ENOMEM) {
@@ -249,7 +251,8 @@ static status cannot_list(const char *folder, fault *f)
                      strerror(errno));
 }
 
-// Adds one entry of a folder, or what is below it.
+// Adds one entry of a folder to the list: a scenario, or all scenarios of a folder below
+// it. `prefix` is the folder's name as the list has it.
 static status add_entry(name_list *list, const char *folder, const char *prefix,
                         const char *entry, int depth, fault *f)
 {
@@ -259,22 +262,21 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
     if (!(path != NULL && name != NULL)) {
         code = fault_no_memory(f);
     }
+
+    // what the entry is; a link that leads nowhere counts as a file
     struct stat about = {0};
     if (code == STATUS_OK && stat(path, &about) != 0 && !is_missing(errno)) {
         code = cannot_list(folder, f);
     }
 
-    // a folder's scenarios have its name before theirs; other files than .yaml are none
+    // the scenarios of a folder have its name before theirs; only .yaml files are
+    // scenarios
     if (code == STATUS_OK && S_ISDIR(about.st_mode)) {
         if (depth < MAX_FOLDER_DEPTH) {
             code = walk(list, path, name, depth + 1, f);
-        } else {
-            code = STATUS_OK;
         }
     } else if (code == STATUS_OK && entry[text_stem(entry, suffix)] != '\0') {
-        if (add_name(list, name, text_stem(name, suffix))) {
-            code = STATUS_OK;
-        } else {
+        if (!add_name(list, name, text_stem(name, suffix))) {
             code = fault_no_memory(f);
         }
     }
@@ -284,8 +286,8 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
     return code;
 }
 
-// Adds the scenarios in and below a folder; one below that is not the user's to read
-// counts as empty.
+// Adds the scenarios in a folder and in those below it. A folder below that the user may
+// not read counts as empty.
 static status walk(name_list *list, const char *folder, const char *prefix, int depth,
                    fault *f)
 {
@@ -321,8 +323,8 @@ static int compare_names(const void *a, const void *b)
     return strverscmp(*(char *const *)a, *(char *const *)b);
 }
 
-// Sorts the names; one that several folders have stays once.
-static void sort_once(name_list *list)
+// Sorts the names and removes duplicates, which come from several folders.
+static void sort_without_duplicates(name_list *list)
 {
     if (list->count == 0) {
         return;
@@ -330,15 +332,15 @@ static void sort_once(name_list *list)
 
     // equal names become neighbours
     qsort(list->names, (size_t)list->count, sizeof *list->names, compare_names);
-    int kept = 1;
+    int unique = 1;
     for (int i = 1; i < list->count; i++) {
-        if (strcmp(list->names[i], list->names[kept - 1]) == 0) {
+        if (strcmp(list->names[i], list->names[unique - 1]) == 0) {
             free(list->names[i]);
         } else {
-            list->names[kept++] = list->names[i];
+            list->names[unique++] = list->names[i];
         }
     }
-    list->count = kept;
+    list->count = unique;
 }
 
 status scenario_list(char ***names, int *count, fault *f)
@@ -359,7 +361,7 @@ status scenario_list(char ***names, int *count, fault *f)
         return result;
     }
 
-    sort_once(&list);
+    sort_without_duplicates(&list);
     *names = list.names;
     *count = list.count;
     return STATUS_OK;
@@ -367,7 +369,8 @@ status scenario_list(char ***names, int *count, fault *f)
 
 // ---- finding --------------------------------------------------------------------------
 
-// Says what is wrong with a name that is neither listed nor a file.
+// Reports a name that is neither that of a scenario nor of a file, with the nearest name
+// that is.
 static status report_unknown(const char *wanted, fault_handler report, void *context)
 {
     char **names;
@@ -382,28 +385,30 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     // the nearest of the shipped scenarios, if their folder can be read
     const char *near = name_nearest(names, sizeof *names, count, stem);
     const status code = STATUS_BAD_ARGUMENT;
-    status told;
+    status reported;
     if (unread.text[0] != '\0') {
-        told = tell(report, context, code,
-                    "'%s' is no file, and no scenario can be found: %s", wanted,
-                    unread.text);
+        reported = report_sentence(report, context, code,
+                                   "'%s' is no file, and no scenario can be found: %s",
+                                   wanted, unread.text);
     } else if (near != NULL) {
-        told = tell(report, context, code,
-                    "'%s' is neither a scenario nor a file, did you mean '%s'?", wanted,
-                    near);
+        reported =
+            report_sentence(report, context, code,
+                            "'%s' is neither a scenario nor a file, did you mean '%s'?",
+                            wanted, near);
     } else {
-        told = tell(report, context, code,
-                    "'%s' is neither a scenario nor a file, expected a name that "
-                    "'impactlab list' shows or the path of a file",
-                    wanted);
+        reported =
+            report_sentence(report, context, code,
+                            "'%s' is neither a scenario nor a file, expected a name that "
+                            "'impactlab list' shows or the path of a file",
+                            wanted);
     }
     free_names(names, count);
     free(stem);
-    return told;
+    return reported;
 }
 
-// Whether the list may show a name: none of its parts is empty or hidden, nor are they
-// too many.
+// Whether the list of scenarios could have a name: it has no empty or hidden part, is not
+// too deep, and is not in the folder that holds no scenarios.
 static bool may_be_listed(const char *name)
 {
     const size_t skipped = sizeof no_scenarios - 1;
@@ -414,9 +419,7 @@ static bool may_be_listed(const char *name)
         }
         part = strchr(part, '/');
         if (part != NULL) {
-            part = part + 1;
-        } else {
-            part = NULL;
+            part++;
         }
     }
     return depth <= MAX_FOLDER_DEPTH + 1 &&
@@ -436,11 +439,12 @@ char *scenario_file_or_folder_file(const char *name)
     return strdup(name);
 }
 
-// The file of a scenario that the list has, on the heap; *path is NULL if it has none of
-// that name. It has none at all if a folder is not there; STATUS_NO_MEMORY is the only
-// failure.
+// Finds the file of a scenario by its name in the list. *path is on the heap, and NULL if
+// the list has no such scenario or a folder of scenarios does not exist. STATUS_NO_MEMORY
+// is the only failure.
 static status find_name(const char *wanted, char **path)
 {
+    // the folders must exist, and the name must be possible
     struct stat about;
     name_list all;
     *path = NULL;
@@ -453,8 +457,8 @@ static status find_name(const char *wanted, char **path)
         return STATUS_OK;
     }
 
-    // a link that leads nowhere is listed, too; of one that cannot be looked at its
-    // reader tells
+    // a file, also one that cannot be looked at or a link that leads nowhere: both are
+    // listed, and reading them will show what is wrong
     *path = find_file(wanted, suffix);
     const bool missing = *path != NULL && lstat(*path, &about) != 0 && is_missing(errno);
     if (*path != NULL && (missing || is_folder(*path))) {

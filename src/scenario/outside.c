@@ -20,15 +20,15 @@ const outside_source outside_table[] = {
 };
 const int outside_count = sizeof outside_table / sizeof outside_table[0];
 
-// What is taken in of each file: its bytes, or only when and where they were written. Of
-// a small one the bytes in any case: two writes may come at one tick of the clock of
-// files.
-enum { SMALL = 256 << 10 };
+// What of a file goes into a digest.
 typedef enum reading {
-    CONTENT,
-    STAMP,
-    KEPT
-} reading; // KEPT: nothing, no result may go there
+    CONTENT, // its bytes
+    STAMP,   // when and where it was written; a file up to SMALL_FILE gives its bytes, as
+             // two writes may come at one tick of the file system's clock
+    KEPT     // nothing: it is only checked that no result will be written over it
+} reading;
+
+enum { SMALL_FILE = 256 << 10 }; // [bytes]
 
 bool outside_is_read(const outside_source *source, const parameters *p)
 {
@@ -53,8 +53,8 @@ unsigned outside_files(void)
     return sources;
 }
 
-// Takes in the digest of a plain file's content. False, with the reason in errno, if it
-// cannot be read.
+// Adds the digest of a plain file's content to `h`. False, with the reason in errno, if
+// the file cannot be read.
 static bool add_content(sha256 *h, const char *path)
 {
     char bytes[16384], digest[SHA256_TEXT];
@@ -63,6 +63,8 @@ static bool add_content(sha256 *h, const char *path)
     if (file == NULL) {
         return false;
     }
+
+    // the content, and the reason where reading it fails
     sha256_init(&content);
     for (size_t count; (count = fread(bytes, 1, sizeof bytes, file)) > 0;) {
         sha256_add(&content, bytes, count);
@@ -76,10 +78,12 @@ static bool add_content(sha256 *h, const char *path)
     return whole;
 }
 
-// Takes in a plain file. False, with the reason in errno, if it cannot be read: ENOENT
-// also where something else stands in its place.
+// Adds a plain file to `h`, or checks it only (KEPT). False, with the reason in errno:
+// ENOENT if there is no plain file of that name, EBUSY if a result would be written over
+// it, else why it cannot be read.
 static bool add_file(sha256 *h, const char *path, reading how)
 {
+    // a plain file
     struct stat what;
     if (stat(path, &what) != 0) {
         return false;
@@ -88,29 +92,32 @@ static bool add_file(sha256 *h, const char *path, reading how)
         errno = ENOENT;
         return false;
     }
+
+    // what of it is asked for
     if (how == KEPT) {
         errno = EBUSY;
         return result_places_find(path) == NULL;
     }
-    if (how == CONTENT || what.st_size <= SMALL) {
+    if (how == CONTENT || what.st_size <= SMALL_FILE) {
         return add_content(h, path);
     }
 
-    // the time of a file's last change cannot be set back
+    // which file it is, and when it was last changed, a time that no program can set back
     const long long stamp[] = {(long long)what.st_dev, (long long)what.st_ino,
                                what.st_size, what.st_ctim.tv_sec, what.st_ctim.tv_nsec};
     sha256_add(h, stamp, sizeof stamp);
     return true;
 }
 
-// Whether a name that could not be read may mean something else than a file.
+// Whether errno says that there is no file of a name, so that the name may mean something
+// else.
 static bool is_no_file(void)
 {
     return errno == ENOENT || errno == ENOTDIR;
 }
 
-// Takes in the program that a word without a slash starts. True, too, where there is
-// none.
+// Adds to `h` the program that a word without a slash starts: the first one that the
+// folders of PATH have. True also if there is none.
 static bool add_program(sha256 *h, const char *word, reading how)
 {
     const char *folders = getenv("PATH");
@@ -129,16 +136,18 @@ static bool add_program(sha256 *h, const char *word, reading how)
     return true;
 }
 
-// Takes in the command and every file that one of its words names: "law.sh",
-// "--table=law.csv", and a program that PATH finds.
+// Adds to `h` a command and every file that one of its words names, as "law.sh" and
+// "--table=law.csv" do, and programs that PATH finds.
 static bool add_command(sha256 *h, const char *command, reading how)
 {
     char word[PARAMETER_TEXT_SIZE];
     sha256_add_text(h, command);
     for (const char *at = command; *(at += strspn(at, " ")) != '\0'; at += strlen(word)) {
         snprintf(word, sizeof word, "%.*s", (int)strcspn(at, " "), at);
-        const char *value = strchr(word, '='),
-                   *names[] = {word, value != NULL ? value + 1 : ""};
+
+        // the word itself, and what follows an equals sign
+        const char *value = strchr(word, '=');
+        const char *names[] = {word, value != NULL ? value + 1 : ""};
         for (int i = 0; i < 2; i++) {
             const bool taken = add_file(h, names[i], how);
             if (!taken && !is_no_file()) {
@@ -147,7 +156,7 @@ static bool add_command(sha256 *h, const char *command, reading how)
             sha256_add_text(h, taken ? "a file" : "no file");
         }
 
-        // options may be anything but programs
+        // any word but an option or an assignment may be a program
         if (strpbrk(word, "/=") == NULL && word[0] != '-' && !add_program(h, word, how)) {
             return false;
         }
@@ -155,6 +164,8 @@ static bool add_command(sha256 *h, const char *command, reading how)
     return true;
 }
 
+// Adds to `h` the path of a parameter and what its value names, a file or a command.
+// False, with the reason in errno, if that cannot be read.
 static bool add_source(sha256 *h, const outside_source *source, const char *value,
                        reading how)
 {
@@ -167,6 +178,8 @@ static bool add_source(sha256 *h, const outside_source *source, const char *valu
 
 bool outside_is_told(const outside_source *source, const parameters *p)
 {
+    // a command must have no character that is special to a shell, and a library a slash:
+    // the system would search for another one
     static const char plain[] =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ./_+-:,@=%";
     char value[PARAMETER_TEXT_SIZE];
@@ -190,6 +203,7 @@ status outside_digest(const outside_source *source, const parameters *p,
     sha256 h;
     parameter_format(p, parameter, value, sizeof value);
 
+    // errno has the reason until the digest is finished
     sha256_init(&h);
     const bool whole = add_source(&h, source, value, CONTENT);
     const int reason = errno;

@@ -6,16 +6,21 @@
 #include "src/base/words.h"
 #include "src/tables/signals.h"
 
-// Whether a control character of UTF-8 begins there.
+// Whether a control character begins at a byte of a text in UTF-8: C0, DEL, or C1, which
+// is 0xc2 and a byte below 0xa0.
 static bool begins_control(const char *at)
 {
     const unsigned char c = (unsigned char)at[0];
     return c < 0x20 || c == 0x7f || (c == 0xc2 && (unsigned char)at[1] < 0xa0);
 }
 
-// Copies prose; only the description may have several lines. NULL after a fault.
+// How many lines a text of prose may have.
+typedef enum prose_lines { ONE_LINE, MANY_LINES } prose_lines;
+
+// Copies a text of prose without blanks at its end. A text of one line has at most
+// SCENARIO_TITLE bytes. NULL after a fault.
 static char *parse_prose(reader *r, const tree_node *node, const char *what,
-                         bool many_lines)
+                         prose_lines lines)
 {
     // trailing blanks are no part of it
     const size_t length = node_text_length(node);
@@ -24,7 +29,8 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what,
         return NULL;
     }
 
-    // control characters are not allowed
+    // control characters are not allowed, but line ends and tabs in many lines are
+    const bool many_lines = lines == MANY_LINES;
     for (size_t i = 0; i < length; i++) {
         const char c = node->text[i];
         if (begins_control(node->text + i) && !(many_lines && (c == '\n' || c == '\t'))) {
@@ -47,15 +53,15 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what,
     return copy;
 }
 
-// Reports a key that a file does not have at its top, with the nearest one that it may
-// have.
+// Reports a key that no scenario file has at its top level, with the nearest one that it
+// may have there.
 static void report_unknown_top(reader *r, const tree_node *key)
 {
     static const char *const others[] = {"title",  "description", "panes",
                                          "script", "expect",      "lesson"};
     nearest_word near = nearest_begin(key->text);
 
-    // a parameter's whole path, which belongs under its group
+    // the whole path of a parameter, which a file has as a key under its group
     int index = parameter_find(key->text);
     if (index >= 0) {
         const char *dot = strchr(key->text, '.');
@@ -64,7 +70,7 @@ static void report_unknown_top(reader *r, const tree_node *key)
         return;
     }
 
-    // all groups, in case none is near
+    // the groups of parameters: a list of all, and the nearest
     char groups[256] = "";
     for (int i = 0; i < parameter_count; i++) {
         const char *path = parameter_table[i].path;
@@ -75,13 +81,14 @@ static void report_unknown_top(reader *r, const tree_node *key)
             snprintf(groups + used, sizeof groups - used, ", %s", group);
         }
 
-        // compared as a word of its own, kept as the beginning of its path, which lasts
+        // the nearest is kept as the path it begins, as `group` does not last
         if (edit_distance(key->text, group, near.distance) < near.distance) {
             near.distance = edit_distance(key->text, group, near.distance);
             near.best = path;
         }
     }
 
+    // the other keys
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         nearest_try(&near, others[i]);
     }
@@ -98,7 +105,7 @@ static void report_unknown_top(reader *r, const tree_node *key)
                 key->text, groups);
 }
 
-// The signals that a scenario is to be looked at by.
+// Reads the list of signals that the panes of a scenario show.
 static void reader_panes(reader *r, const tree_node *list)
 {
     if (list->kind != TREE_LIST) {
@@ -108,6 +115,7 @@ static void reader_panes(reader *r, const tree_node *list)
         return;
     }
 
+    // each is a known signal, and there is a pane for it
     for (const tree_node *child = list->first; child != NULL; child = child->next) {
         const int signal = node_is_scalar(child) ? signal_find(child->text) : -1;
         if (signal < 0) {
@@ -122,8 +130,8 @@ static void reader_panes(reader *r, const tree_node *list)
     }
 }
 
-// Reads everything; script, expect and lesson come after the parameters that they depend
-// on.
+// Reads a whole file. Script, expectations and lesson are read last, as they depend on
+// the parameters.
 static void parse_root(reader *r, const tree_node *root)
 {
     const tree_node *script = NULL, *expect = NULL, *steps = NULL;
@@ -131,7 +139,7 @@ static void parse_root(reader *r, const tree_node *root)
         return;
     }
 
-    // each key once; what depends on parameters is kept for later
+    // every key of the top level; what depends on parameters is put aside
     for (const tree_node *child = root->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, root, child);
         if (key == NULL) {
@@ -139,9 +147,9 @@ static void parse_root(reader *r, const tree_node *root)
         }
 
         if (strcmp(key, "title") == 0) {
-            r->s->title = parse_prose(r, child, "title", false);
+            r->s->title = parse_prose(r, child, "title", ONE_LINE);
         } else if (strcmp(key, "description") == 0) {
-            r->s->description = parse_prose(r, child, "description", true);
+            r->s->description = parse_prose(r, child, "description", MANY_LINES);
         } else if (strcmp(key, "panes") == 0) {
             reader_panes(r, child);
         } else if (strcmp(key, "script") == 0) {
@@ -157,7 +165,7 @@ static void parse_root(reader *r, const tree_node *root)
         }
     }
 
-    // what depends on all parameters
+    // all parameters together, and whether the lock is a mode of the law
     r->duration_known =
         r->given[PARAMETER_INDEX(run.duration)].line > 0 || r->faults == 0;
     reader_resolve(r);
@@ -165,6 +173,8 @@ static void parse_root(reader *r, const tree_node *root)
     if (lock.line > 0) {
         reader_check_lock(r, &r->s->parameters, lock);
     }
+
+    // what depends on them
     if (script != NULL) {
         fault f;
         reader_script(r, script);
@@ -180,25 +190,26 @@ static void parse_root(reader *r, const tree_node *root)
     }
 }
 
-// Fills in name, file and what the file left out.
+// Fills in the scenario's name and file, the line of each parameter, and empty texts for
+// what the file left out.
 static void complete(reader *r, const char *name)
 {
     scenario *s = r->s;
-    const char *called = name != NULL ? name : r->path;
+    const char *scenario_name = name != NULL ? name : r->path;
     s->written = s->parameters;
     for (int i = 0; i < parameter_count; i++) {
         s->lines[i] = r->given[i].line;
     }
-    s->name = strdup(called);
+    s->name = strdup(scenario_name);
     s->file = strdup(r->path);
 
-    // the name stands in for a title, if it can
-    bool can = strlen(called) <= SCENARIO_TITLE;
-    for (const char *c = called; *c != '\0'; c++) {
-        can = can && !begins_control(c);
+    // without a title the name is the title, if it is one line that is short enough
+    bool suits_title = strlen(scenario_name) <= SCENARIO_TITLE;
+    for (const char *c = scenario_name; *c != '\0'; c++) {
+        suits_title = suits_title && !begins_control(c);
     }
     if (s->title == NULL) {
-        s->title = strdup(can ? called : "untitled");
+        s->title = strdup(suits_title ? scenario_name : "untitled");
     }
     if (s->description == NULL) {
         s->description = strdup("");
@@ -217,6 +228,7 @@ status scenario_parse(scenario *s, const char *text, size_t length, const char *
     *s = (scenario){0};
     parameters_defaults(&s->parameters, ARM_CORRECTED);
 
+    // the tree of keys and values, then what they mean
     tree_node *root = tree_parse(text, length, &f);
     if (root == NULL) {
         r.no_memory = f.code == STATUS_NO_MEMORY;
@@ -226,7 +238,7 @@ status scenario_parse(scenario *s, const char *text, size_t length, const char *
         tree_free(root);
     }
 
-    // faults are reported together, and whoever has some gets no scenario
+    // all faults are reported together; a file with faults gives no scenario
     if (r.faults == 0 && !r.no_memory) {
         complete(&r, name);
     }

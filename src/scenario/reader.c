@@ -37,7 +37,7 @@ bool reader_report_at(reader *r, int line, int column, const char *format, ...)
     return false;
 }
 
-// By the place in the file; equal places in the order found.
+// Orders faults by their place in the file, and those of one place in the order found.
 static int compare_places(const void *a, const void *b)
 {
     const found_fault *x = a, *y = b;
@@ -65,7 +65,7 @@ void reader_report_all(reader *r, fault_handler report, void *context)
     free(r->found);
     r->found = NULL;
 
-    // what could not be recorded is not lost without a word
+    // faults for which there was no memory are reported as that
     if (r->no_memory) {
         report(context, status_text(STATUS_NO_MEMORY));
     }
@@ -137,9 +137,8 @@ bool reader_expect_map(reader *r, const tree_node *node, const char *what,
 bool reader_quantity(reader *r, const tree_node *node, const char *what, const char *unit,
                      double *value)
 {
-    const char *rest, *space = unit[0] != '\0' ? " in " : "";
-
     // a number
+    const char *rest, *space = unit[0] != '\0' ? " in " : "";
     if (!node_is_scalar(node) || node_is_empty(node)) {
         return report_node(r, node, "%s is %s, expected a number%s%s", what,
                            node_kind_name(node), space, unit);
@@ -181,8 +180,8 @@ bool reader_is_group(const char *word)
     return false;
 }
 
-// Reports a key that its group does not have: in another group, or near to one of its
-// own.
+// Reports a key that its group does not have, with the group that has it, or else with
+// the nearest key of its own group.
 static void report_unknown_parameter(reader *r, const tree_node *key, const char *group)
 {
     const char *elsewhere = parameter_suggest(key->text);
@@ -192,7 +191,7 @@ static void report_unknown_parameter(reader *r, const tree_node *key, const char
         return;
     }
 
-    // misspelt
+    // misspelt: the nearest of the group's keys, or all of them
     nearest_word near = nearest_begin(key->text);
     char known[640] = "";
     for (int i = 0; i < parameter_count; i++) {
@@ -222,8 +221,9 @@ const char *reader_value_text(reader *r, const tree_node *node, const char *path
     return node->text;
 }
 
-// The numbers of a YAML list with commas between them, each checked where it stands; a
-// value that is no list stays as it is. NULL after a fault.
+// The text of a parameter's list: the numbers of a YAML list with commas between them, in
+// `list`, each checked so that a fault is reported at its place. A value that is no YAML
+// list is returned as it is. NULL after a fault.
 static const char *list_text(reader *r, const tree_node *node, int index,
                              char list[PARAMETER_TEXT_SIZE])
 {
@@ -232,7 +232,7 @@ static const char *list_text(reader *r, const tree_node *node, int index,
         return reader_value_text(r, node, path);
     }
 
-    // a number at a time
+    // each number by itself
     size_t used = 0;
     list[0] = '\0';
     for (const tree_node *child = node->first; child != NULL; child = child->next) {
@@ -257,7 +257,7 @@ static const char *list_text(reader *r, const tree_node *node, int index,
     return list;
 }
 
-// The settings of a law as a map, NAME: NUMBER.
+// Reads control.settings given as a map of NAME: NUMBER.
 static void read_settings(reader *r, const tree_node *map)
 {
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
@@ -268,7 +268,7 @@ static void read_settings(reader *r, const tree_node *map)
             continue;
         }
 
-        // a name that can be one, and its number
+        // a name that a setting can have, and its number
         snprintf(path, sizeof path, "control.settings.%s", key);
         if (settings_look_up(path, &name, &f) < 0) {
             report_node(r, child->key, "%s", f.text);
@@ -286,7 +286,7 @@ void reader_group(reader *r, const tree_node *map, const char *group)
 {
     fault f;
 
-    // a group that is no map is shown the first of its parameters
+    // a group must be a map; the report shows its first parameter as an example
     int first = 0;
     while (!parameter_in_group(parameter_table[first].path, group)) {
         first++;
@@ -298,6 +298,7 @@ void reader_group(reader *r, const tree_node *map, const char *group)
         return;
     }
 
+    // its parameters
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         r->about = NULL;
         const char *key = reader_key(r, map, child);
@@ -305,7 +306,7 @@ void reader_group(reader *r, const tree_node *map, const char *group)
             continue;
         }
 
-        // the parameter's whole path
+        // the whole path of the parameter
         char path[128];
         snprintf(path, sizeof path, "%s.%s", group, key);
         int index = parameter_find(path);
@@ -314,13 +315,15 @@ void reader_group(reader *r, const tree_node *map, const char *group)
             continue;
         }
 
-        // its value, and where it stands
+        // settings that are given as a map
         r->about = parameter_table[index].path;
         if (index == PARAMETER_INDEX(control.settings) && child->kind == TREE_MAP) {
             read_settings(r, child);
             r->given[index] = (place){child->line, child->column};
             continue;
         }
+
+        // any other value, and its place in the file
         char list[PARAMETER_TEXT_SIZE];
         const char *text;
         if (parameter_table[index].type == PARAMETER_LIST) {
@@ -343,13 +346,13 @@ void reader_resolve(reader *r)
     fault f;
     parameters trial = r->s->parameters;
     while (parameters_resolve(&trial, &f) != STATUS_OK) {
-        // defaults go together, so that a parameter which the file gives is to blame
+        // defaults suit one another, so that the parameter to blame is one of the file's
         const int blamed = parameter_find(f.path);
         assert(blamed >= 0 && r->given[blamed].line > 0);
         r->about = parameter_table[blamed].path;
         reader_report_at(r, r->given[blamed].line, r->given[blamed].column, "%s", f.text);
 
-        // with its default the others may show faults of their own
+        // with its default instead, faults of the others can be found
         trial.set[blamed] = 0;
     }
     r->about = NULL;

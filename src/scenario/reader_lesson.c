@@ -8,7 +8,7 @@
 #include "src/base/words.h"
 #include "src/tables/summary.h"
 
-#define NEAR_ENOUGH 0.001 // share of a value that a parameter may be off
+#define NEAR_ENOUGH 0.001 // the tolerance of a parameter's value, as a share of it
 
 // --- pieces ----------------------------------------------------------------------------
 
@@ -21,7 +21,7 @@ static char *read_text(reader *r, const tree_node *node, const char *what)
         return NULL;
     }
 
-    // folded lines are one
+    // line ends and tabs become blanks
     char *text = strndup(node->text, length);
     if (!reader_have_memory(r, text)) {
         return NULL;
@@ -34,31 +34,33 @@ static char *read_text(reader *r, const tree_node *node, const char *what)
     return text;
 }
 
-// Fills texts from a list; returns how many there are.
+// Reads the texts of a list, `most` of them at most. Returns how many there are.
 static int read_texts(reader *r, const tree_node *list, const char *what, char **texts,
                       int most)
 {
-    int count = 0;
-
-    // what is no list has no texts
+    // it must be a list
     if (list->kind != TREE_LIST) {
         report_node(r, list, "%s is %s, expected a list", what, node_kind_name(list));
         return 0;
     }
 
-    // a text that cannot be read is left out
+    // its texts; one that cannot be read is left out
+    int count = 0;
     for (const tree_node *child = list->first; child != NULL; child = child->next) {
         if (count == most) {
             report_node(r, child, "%s: more than %d of them", what, most);
             return count;
         }
         texts[count] = read_text(r, child, what);
-        count += texts[count] != NULL;
+        if (texts[count] != NULL) {
+            count++;
+        }
     }
     return count;
 }
 
-// Reports the keys of a map other than those of `known`, which stand between blanks.
+// Reports every key of a map that is not one of `known`, which lists keys with a blank
+// before and after each.
 static void refuse_other_keys(reader *r, const tree_node *map, const char *known)
 {
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
@@ -72,9 +74,12 @@ static void refuse_other_keys(reader *r, const tree_node *map, const char *known
     }
 }
 
-// A number of a map, not below the least; the value stays where the key may be left out
-// and is.
-static void read_number(reader *r, const tree_node *map, const char *key, bool needed,
+// Whether a map must have a key.
+typedef enum key_need { OPTIONAL, REQUIRED } key_need;
+
+// Reads a number of a map, which may not be less than `least`. If an optional key is
+// missing, the value stays as it is.
+static void read_number(reader *r, const tree_node *map, const char *key, key_need need,
                         double least, double *value)
 {
     const tree_node *node = tree_child(map, key);
@@ -82,12 +87,13 @@ static void read_number(reader *r, const tree_node *map, const char *key, bool n
         if (reader_quantity(r, node, key, "", value) && *value < least) {
             report_node(r, node, "%s = %g, expected at least %g", key, *value, least);
         }
-    } else if (needed) {
+    } else if (need == REQUIRED) {
         report_node(r, map, "there is no '%s' here, expected one", key);
     }
 }
 
-// A whole number from 1 to `most`; 0 after a fault, which says that it is `what`.
+// A whole number from 1 to `most`; 0 after a fault, whose sentence calls the number
+// `what`.
 static int read_count(reader *r, const tree_node *node, const char *key, int most,
                       const char *what)
 {
@@ -103,7 +109,7 @@ static int read_count(reader *r, const tree_node *node, const char *key, int mos
     return (int)number;
 }
 
-// A quantity of the summary that a map names.
+// Reads the name of a quantity of the summary from a map, as its index.
 static void read_quantity(reader *r, const tree_node *map, const char *key, int *index)
 {
     const tree_node *node = tree_child(map, key);
@@ -122,6 +128,7 @@ static void read_quantity(reader *r, const tree_node *map, const char *key, int 
 
 // --- checks ----------------------------------------------------------------------------
 
+// Reads a question with several answers: the answers, and the number of the right one.
 static void read_choice(reader *r, const tree_node *map, lesson_step *step)
 {
     const tree_node *of = tree_child(map, "of"), *right = tree_child(map, "right");
@@ -145,8 +152,10 @@ static void read_choice(reader *r, const tree_node *map, lesson_step *step)
     }
 }
 
+// Reads the value that a parameter must have: a map of one path and its value.
 static void read_value(reader *r, const tree_node *map, lesson_step *step)
 {
+    // one key, a path
     fault f = {0};
     const tree_node *child = map->first;
     step->within = NEAR_ENOUGH;
@@ -159,7 +168,7 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
         return;
     }
 
-    // a scratch copy checks and converts the value
+    // the parameter has one value, which a copy of the parameters checks and converts
     step->parameter = parameter_look_up(path, &f);
     const char *text = step->parameter >= 0 ? reader_value_text(r, child, path) : NULL;
     parameters scratch = r->s->parameters;
@@ -183,7 +192,8 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
     step->value = parameter_get(&scratch, step->parameter);
 }
 
-// Reads a condition that a step requires; false if the key is no such condition.
+// Reads a check, a condition that must hold before a step is done. False if the key names
+// no check.
 static bool read_check(reader *r, const char *key, const tree_node *node,
                        lesson_step *step)
 {
@@ -198,6 +208,8 @@ static bool read_check(reader *r, const char *key, const tree_node *node,
                  {"ratio", LESSON_RATIO, " quantity from to "},
                  {"pinned", LESSON_PINNED, ""}};
     enum { KINDS = sizeof kinds / sizeof *kinds };
+
+    // which check it is, the only one of the step
     int kind = 0;
     while (kind < KINDS && strcmp(key, kinds[kind].key) != 0) {
         kind++;
@@ -212,7 +224,7 @@ static bool read_check(reader *r, const char *key, const tree_node *node,
         return true;
     }
 
-    // a count, or a map of what it needs
+    // `pinned` is a number, any other a map of the keys that it knows
     if (check != LESSON_PINNED &&
         !reader_expect_map(r, node, key, "quantity: peak_force_N")) {
         return true;
@@ -221,6 +233,8 @@ static bool read_check(reader *r, const char *key, const tree_node *node,
     if (kinds[kind].known[0] != '\0') {
         refuse_other_keys(r, node, kinds[kind].known);
     }
+
+    // what it asks for
     if (check == LESSON_PINNED) {
         step->pinned =
             read_count(r, node, key, LESSON_PINNED_RUNS, "how many runs are pinned");
@@ -230,27 +244,30 @@ static bool read_check(reader *r, const char *key, const tree_node *node,
         read_value(r, node, step);
     } else if (check == LESSON_NUMBER) {
         read_quantity(r, node, "quantity", &step->quantity);
-        read_number(r, node, "within", true, 0, &step->within);
+        read_number(r, node, "within", REQUIRED, 0, &step->within);
     } else if (check == LESSON_CURSOR) {
         read_quantity(r, node, "at", &step->quantity);
-        read_number(r, node, "offset", false, -HUGE_VAL, &step->offset);
-        read_number(r, node, "within", true, 0, &step->within);
+        read_number(r, node, "offset", OPTIONAL, -HUGE_VAL, &step->offset);
+        read_number(r, node, "within", REQUIRED, 0, &step->within);
     } else {
         read_quantity(r, node, "quantity", &step->quantity);
-        read_number(r, node, "from", true, -HUGE_VAL, &step->low);
-        read_number(r, node, "to", true, step->low, &step->high);
+        read_number(r, node, "from", REQUIRED, -HUGE_VAL, &step->low);
+        read_number(r, node, "to", REQUIRED, step->low, &step->high);
     }
     return true;
 }
 
 // --- steps -----------------------------------------------------------------------------
 
+// Reads a step of the lesson: its texts, commands and check.
 static void read_step(reader *r, const tree_node *map, lesson_step *step)
 {
     static const char *const texts[] = {"say", "then", "hint"}; // as in lesson_step
     if (!reader_expect_map(r, map, "a step", "say: ...")) {
         return;
     }
+
+    // every key is a check, a text or the list of commands
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, map, child);
         if (key == NULL || read_check(r, key, child, step)) {
@@ -270,7 +287,7 @@ static void read_step(reader *r, const tree_node *map, lesson_step *step)
         }
     }
 
-    // what can be left out is empty
+    // `say` is needed; texts that are left out are empty
     if (tree_child(map, "say") == NULL) {
         report_node(r, map, "a step has no 'say', expected text");
     }
@@ -284,6 +301,7 @@ static void read_step(reader *r, const tree_node *map, lesson_step *step)
     reader_have_memory(r, step->hint);
 }
 
+// Reads the paths of the parameters that matter in the lesson.
 static void read_parameters(reader *r, const tree_node *list, lesson *l)
 {
     char *paths[LESSON_PARAMETERS] = {0};
@@ -308,6 +326,8 @@ void reader_lesson(reader *r, const tree_node *map)
     if (!reader_expect_map(r, map, "lesson", "steps: [...]")) {
         return;
     }
+
+    // its keys
     refuse_other_keys(r, map, " steps parameters ");
     const tree_node *steps = tree_child(map, "steps");
     const tree_node *parameters_that_matter = tree_child(map, "parameters");
@@ -319,7 +339,7 @@ void reader_lesson(reader *r, const tree_node *map)
         read_parameters(r, parameters_that_matter, l);
     }
 
-    // room for all of them, then one after the other
+    // memory for all steps, then one after the other
     int most = 0;
     for (const tree_node *child = steps->first; child != NULL; child = child->next) {
         most++;

@@ -7,6 +7,7 @@
 #include "src/tables/settings.h"
 #include "src/tables/summary.h"
 
+// Adds an action to the scenario's script, in the order of time.
 static void add_action(reader *r, action a)
 {
     scenario *s = r->s;
@@ -18,8 +19,10 @@ static void add_action(reader *r, action a)
     scenario_insert_action(s, a);
 }
 
-// Index of the parameter that a key of `set` names, and what gives it the value; -1 after
-// a fault.
+// The index of the parameter that a key of `set` names; -1 after a fault. *text is the
+// value in the file, and becomes the text to be given to that parameter: for a single
+// setting,
+// ".NAME=VALUE" in `room`.
 static int find_timed_parameter(reader *r, const tree_node *key, const char **text,
                                 char room[PARAMETER_TEXT_SIZE])
 {
@@ -36,7 +39,8 @@ static int find_timed_parameter(reader *r, const tree_node *key, const char **te
     return index;
 }
 
-// Parses `set`; without a time its values are only checked.
+// Parses `set`, a map of parameters and values, and adds an action for each. Without a
+// valid time (`timed` is false) the values are only checked.
 static void parse_set(reader *r, const tree_node *map, bool timed, double time)
 {
     if (!reader_expect_map(r, map, "set", "motor.voltage: 2 V")) {
@@ -46,6 +50,8 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
     // each parameter by itself, so that one fault does not hide the next
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *path = reader_key(r, map, child);
+
+        // the parameter and its value
         char room[PARAMETER_TEXT_SIZE];
         const char *text =
             node_is_scalar(child) && child->text != NULL ? child->text : "";
@@ -55,14 +61,14 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
             continue;
         }
 
-        // a scratch copy checks and converts the value
+        // a copy of the parameters checks and converts the value
         fault f;
         parameters scratch = r->s->parameters;
         if (parameter_may_change(&scratch, index, &f) != STATUS_OK ||
             parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
         } else if (timed) {
-            // in force from the instant on
+            // it is in force from its time on
             action a = action_of(time, &scratch, index, text);
             a.line = child->line;
             if (index == PARAMETER_INDEX(control.lock)) {
@@ -73,7 +79,8 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
     }
 }
 
-// Parses `push`; without a time it is only checked.
+// Parses `push`, an impulse, and adds an action for it. Without a valid time (`timed` is
+// false) it is only checked.
 static void parse_push(reader *r, const tree_node *node, bool timed, double time)
 {
     double impulse;
@@ -105,7 +112,8 @@ static bool parse_time(reader *r, const tree_node *node, double *time)
     return true;
 }
 
-// Finds the time of an action and what it does; NULL for what is missing.
+// Finds the nodes of an action's time (`at`) and of its effect (`set` or `push`). A node
+// that is missing stays NULL.
 static void find_action_parts(reader *r, const tree_node *map, const tree_node **at,
                               const tree_node **effect)
 {
@@ -135,6 +143,7 @@ static void find_action_parts(reader *r, const tree_node *map, const tree_node *
     }
 }
 
+// Parses one action of the script: its time, and `set` or `push`.
 static void parse_action(reader *r, const tree_node *map)
 {
     const tree_node *at = NULL, *effect = NULL;
@@ -143,7 +152,8 @@ static void parse_action(reader *r, const tree_node *map)
         return;
     }
 
-    // a misspelt key already explains what is missing
+    // both parts are needed; after a fault of a key, which explains what is missing,
+    // nothing more is reported
     int faults = r->faults;
     find_action_parts(r, map, &at, &effect);
     if (at == NULL && r->faults == faults) {
@@ -153,6 +163,7 @@ static void parse_action(reader *r, const tree_node *map)
         report_node(r, map, "an action that does nothing, expected 'set:' or 'push:'");
     }
 
+    // its effect is checked even without a valid time
     bool timed = at != NULL && parse_time(r, at, &time);
     if (effect != NULL && strcmp(effect->key->text, "set") == 0) {
         parse_set(r, effect, timed, time);
@@ -175,7 +186,8 @@ void reader_script(reader *r, const tree_node *list)
 
 // --- expectations ----------------------------------------------------------------------
 
-// Index in the summary of a quantity that two machines agree about; -1 after a fault.
+// The index of a quantity of the summary that is the same on every machine; -1 after a
+// fault.
 static int parse_quantity(reader *r, const tree_node *key)
 {
     int index = summary_find(key->text);
@@ -183,7 +195,7 @@ static int parse_quantity(reader *r, const tree_node *key)
         return index;
     }
 
-    // one that the computer decides, or none of the summary
+    // a time of computing, or no quantity of the summary
     if (index >= 0) {
         report_node(r, key, "%s depends on the computer, expected a quantity of the arm",
                     key->text);
@@ -208,7 +220,7 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
                            quantity, node_kind_name(map));
     }
 
-    // which of the two keys are there
+    // its two keys, which it must have
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, map, child);
         if (key == NULL) {
@@ -225,6 +237,7 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
         }
     }
 
+    // either may be missing
     if (value == NULL || tolerance == NULL) {
         report_node(r, map, "%s has no %s, expected {value: ..., tolerance: ...}",
                     quantity, value == NULL ? "value" : "tolerance");
@@ -252,7 +265,7 @@ void reader_expectations(reader *r, const tree_node *map)
         return;
     }
 
-    // room for as many as there are keys
+    // memory for an expectation for every key
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         most++;
     }
@@ -261,7 +274,7 @@ void reader_expectations(reader *r, const tree_node *map)
         return;
     }
 
-    // null, or a value and how far it may be off
+    // each is null, or a value with a tolerance
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, map, child);
         int quantity = key != NULL ? parse_quantity(r, child->key) : -1;
