@@ -54,7 +54,7 @@ int api_fail(impactlab_error *error, status code, const char *format, ...)
 
 int api_done(impactlab_error *error)
 {
-    // what is long stays, for the sake of loops
+    // only the beginnings of the texts are cleared, as loops call this at every step
     if (error != NULL) {
         error->status = IMPACTLAB_OK;
         error->line = error->column = 0;
@@ -65,6 +65,7 @@ int api_done(impactlab_error *error)
 
 int api_missing(impactlab_error *error, const char *names, size_t i)
 {
+    // name i of a list with commas; a handle is a scenario to the caller
     for (; i > 0; i--) {
         names = strchr(names, ',') + 2;
     }
@@ -123,7 +124,7 @@ int api_signal(const char *name, impactlab_error *error)
         return index;
     }
 
-    // most names that are not known are misspelt
+    // most unknown names are misspelt: the nearest one
     nearest_word near = nearest_begin(name);
     for (int i = 0; i < signal_count; i++) {
         nearest_try(&near, signal_table[i].name);
@@ -146,7 +147,7 @@ int api_fail_unknown(impactlab_error *error, const char *kind, const char *name,
 int api_text(char **text, void (*write)(FILE *stream, const void *what), const void *what,
              impactlab_error *error)
 {
-    // what was lost on this thread before is nothing of this text's
+    // losses that this thread has noted before do not count for this text
     text_stream stream;
     loss_forget();
     *text = NULL;

@@ -165,7 +165,7 @@ int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading
                         "the bare arm has no sensors, expected a control.law or COMMAND");
     }
 
-    // field by field, as the layout within may change and this one not
+    // field by field: the library's layout is fixed, that of the program may change
     *reading = (impactlab_reading){.time = loop_time(loop->loop),
                                    .encoder = read.encoder,
                                    .tachometer = read.tachometer,
@@ -205,7 +205,7 @@ int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_erro
     *run = NULL;
     API_NEEDS(error, loop);
 
-    // a copy, so that the loop can go on or end
+    // the run is a copy, so that the loop can continue or end
     impactlab_run *made = api_new_run(loop_scenario(loop->loop), error);
     if (made == NULL) {
         return IMPACTLAB_NO_MEMORY;
@@ -218,7 +218,7 @@ int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_erro
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the rows of a run");
     }
 
-    // handed over only when whole
+    // the caller gets only a complete one
     made->result.summary = loop_summary(loop->loop);
     *run = made;
     return api_done(error);

@@ -7,7 +7,7 @@
 #include "src/run/export.h"
 #include "src/run/run.h"
 
-// Whether the rig can call a controller that a program gives.
+// Checks that the rig can use a controller that a program gives.
 static int check_law(const controller *law, impactlab_error *error)
 {
     if (law->interface != CONTROLLER_INTERFACE) {
@@ -17,7 +17,7 @@ static int check_law(const controller *law, impactlab_error *error)
             law->interface, CONTROLLER_INTERFACE);
     }
 
-    // what the rig calls or relies on without asking again
+    // what the rig relies on without checking
     if (law->name == NULL || law->modes == NULL || law->sample == NULL ||
         law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
         (law->parameter_count > 0 && law->parameters == NULL)) {
@@ -61,6 +61,7 @@ int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *han
         return IMPACTLAB_BAD_ARGUMENT;
     }
 
+    // the whole run; the caller gets it even if it failed
     impactlab_run *made = api_new_run(&handle->scenario, error);
     if (made == NULL) {
         return IMPACTLAB_NO_MEMORY;
@@ -139,7 +140,7 @@ int impactlab_run_signal(const impactlab_run *run, const char *name,
         return IMPACTLAB_BAD_ARGUMENT;
     }
 
-    // values stay where they are, a row apart
+    // the values are not copied: they are in the rows, one row's size apart
     const trace *t = &run->result.trace;
     *series = (impactlab_series){.count = t->row_count, .stride = sizeof(sample)};
     if (t->row_count > 0) {
@@ -231,6 +232,7 @@ int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *pr
                         "the arm did not touch the wall after a free flight in this run");
     }
 
+    // the answers, as many as there is room for
     for (size_t i = 0; i < count && i < PREDICTOR_COUNT; i++) {
         const prediction_answer *a = &answers[i];
         if (a->fault.code == STATUS_NO_MEMORY) {

@@ -30,7 +30,8 @@ void impactlab_names_free(char **names, size_t count)
     free(names);
 }
 
-// A handle for a scenario to be read into; NULL, with an error, without memory.
+// Allocates a handle, into which a scenario will be read. NULL, with an error, without
+// memory.
 static impactlab_scenario *new_handle(impactlab_scenario **handle, impactlab_error *error)
 {
     *handle = calloc(1, sizeof **handle);
@@ -40,19 +41,20 @@ static impactlab_scenario *new_handle(impactlab_scenario **handle, impactlab_err
     return *handle;
 }
 
-// Tells in the title what a scenario has become. Returns IMPACTLAB_OK.
-static int retitle(impactlab_scenario *handle, impactlab_error *error)
+// Writes the title of a scenario with its changes into the handle. Returns IMPACTLAB_OK.
+static int update_title(impactlab_scenario *handle, impactlab_error *error)
 {
     scenario_titled(&handle->scenario, handle->title);
     return api_done(error);
 }
 
-// What reading came to: nothing is left of a handle that could not be filled.
+// Ends the reading of a scenario, whose outcome is `code`: completes the handle, or frees
+// it and reports the first fault.
 static int finish_reading(impactlab_scenario **handle, status code, fault *first,
                           impactlab_error *error)
 {
     if (code == STATUS_OK) {
-        return retitle(*handle, error);
+        return update_title(*handle, error);
     }
     const fault_place at = (*handle)->scenario.refused;
     free(*handle);
@@ -119,7 +121,7 @@ int impactlab_scenario_copy(impactlab_scenario **handle, const impactlab_scenari
         *handle = NULL;
         return api_fail(error, STATUS_NO_MEMORY, "no memory for a scenario");
     }
-    return retitle(*handle, error);
+    return update_title(*handle, error);
 }
 
 void impactlab_scenario_destroy(impactlab_scenario *handle)
@@ -189,7 +191,7 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path,
     sweep_axis axis;
     TRY((status)api_axis(path, &axis, error));
 
-    // whole or not at all
+    // the whole value, or none if there is no room for it
     const parameters *p = &handle->scenario.parameters;
     char whole[PARAMETER_TEXT_SIZE] = "";
     double value;
@@ -217,6 +219,7 @@ int impactlab_scenario_is_set(const impactlab_scenario *handle, const char *path
            (name == NULL || settings_get(&handle->scenario.parameters, name, &value));
 }
 
+// api_text's writer: the scenario as YAML.
 static void write_yaml(FILE *stream, const void *what)
 {
     scenario_write(stream, what);
@@ -238,6 +241,8 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     if (count == 0) {
         return api_done(error);
     }
+
+    // every assignment must be there
     API_NEEDS(error, assignments);
     SCOPED(free_kept) char **given = calloc(count, sizeof *given);
     if (given == NULL) {
@@ -249,7 +254,7 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
         whole = whole && given[i] != NULL;
     }
 
-    // nothing is changed if one of them is wrong
+    // if one of them is wrong, the parameters are restored
     const parameters before = handle->scenario.parameters;
     fault first = {.code = STATUS_OK};
     status code = STATUS_BAD_ARGUMENT;
@@ -258,7 +263,7 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
                                      keep_first_fault, &first);
     }
     if (code == STATUS_OK) {
-        return retitle(handle, error);
+        return update_title(handle, error);
     }
     handle->scenario.parameters = before;
     if (!whole) {
@@ -286,7 +291,7 @@ int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const c
     if (scenario_take_parameters(&handle->scenario, &p, &f) != STATUS_OK) {
         return api_error(error, &f);
     }
-    return retitle(handle, error);
+    return update_title(handle, error);
 }
 
 int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path,
@@ -303,11 +308,11 @@ int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path,
     if (scenario_take_parameters(&handle->scenario, &p, &f) != STATUS_OK) {
         return api_error(error, &f);
     }
-    return retitle(handle, error);
+    return update_title(handle, error);
 }
 
-// Room for one more action of the script.
-static bool make_room(scenario *s)
+// Makes room for one more action of the script. False without memory.
+static bool make_room_for_action(scenario *s)
 {
     action *grown = realloc(s->actions, (size_t)(s->action_count + 1) * sizeof *grown);
     if (grown != NULL) {
@@ -316,6 +321,7 @@ static bool make_room(scenario *s)
     return grown != NULL;
 }
 
+// Checks that an instant [s] is within the run.
 static int check_instant(const scenario *s, double time, impactlab_error *error)
 {
     if (!(time >= 0 && time <= s->parameters.run.duration)) {
@@ -342,7 +348,7 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time,
                         "%s holds from the start and cannot change during a run", path);
     }
 
-    // the value as the parameter takes it
+    // the value, checked and converted by the parameters in force at that time
     parameters p = scenario_parameters_at(s, time);
     fault f = {.text = "", .path = ""};
     if (parameter_may_change(&p, index, &f) != STATUS_OK) {
@@ -354,11 +360,11 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time,
     action a = action_of(time, &p, index, text);
     a.added = true;
 
-    if (!make_room(s)) {
+    if (!make_room_for_action(s)) {
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
     }
     scenario_insert_action(s, a);
-    return retitle(handle, error);
+    return update_title(handle, error);
 }
 
 int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double impulse,
@@ -370,7 +376,7 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
         return IMPACTLAB_BAD_ARGUMENT;
     }
 
-    // what the arm can be given
+    // an impulse that the model can take
     if (!isfinite(impulse)) {
         return api_fail(error, STATUS_BAD_ARGUMENT,
                         "the impulse is not finite, expected N s");
@@ -379,11 +385,11 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
         return api_fail(error, STATUS_BAD_SCENARIO, "the printed model takes no pushes");
     }
 
-    // with room there is nothing left to fail
-    if (!make_room(s)) {
+    // then into the script
+    if (!make_room_for_action(s)) {
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
     }
     scenario_insert_action(
         s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse, .added = true});
-    return retitle(handle, error);
+    return update_title(handle, error);
 }

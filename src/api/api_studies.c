@@ -8,23 +8,25 @@
 #include "src/study/batch.h"
 #include "src/study/pool.h"
 
-// So many runs a thread are computed before their outcomes are handed over.
+// A batch is computed in turns. This is the number of runs of each thread in a turn,
+// after which their outcomes are handed to the caller.
 enum { RUNS_A_TURN = 16 * RUN_TOGETHER };
 
-#define ASKED 0.01 // how often the calling thread asks while others compute [s]
+// How often the calling thread asks whether to stop while others compute [s].
+#define ASKING_INTERVAL 0.01
 
-// A batch in hand.
+// A batch that is being computed.
 typedef struct varied {
     const scenario *base;
-    const sweep_axis *axes; // without values of their own
-    const double *values;   // row by row
+    const sweep_axis *axes; // the parameters that vary
+    const double *values;   // their values, a row for each run
     size_t axis_count;
-    size_t first; // of this turn
-    stop_request stop;
-    atomic_bool stopped; // the runs in hand are to end
+    size_t first;        // run of this turn
+    stop_request stop;   // how the caller is asked whether to stop
+    atomic_bool stopped; // the runs of this turn are to end
 } varied;
 
-// The scenario of a run of this turn; `f` says what is wrong with it.
+// Makes the scenario of run i of this turn; f says what is wrong with it.
 static status vary(void *context, size_t i, scenario *made, fault *f)
 {
     const varied *v = context;
@@ -32,8 +34,9 @@ static status vary(void *context, size_t i, scenario *made, fault *f)
     return sweep_axes_scenario(v->axes, (int)v->axis_count, values, v->base, made, f);
 }
 
-// On the calling thread, while runs are computed.
-static status look_up(void *context, bool over, fault *f)
+// Asks the caller whether to stop. The pool calls it on the calling thread while others
+// compute.
+static status ask_to_stop(void *context, bool over, fault *f)
 {
     varied *v = context;
     (void)over, (void)f;
@@ -43,7 +46,7 @@ static status look_up(void *context, bool over, fault *f)
     return STATUS_OK;
 }
 
-// Tells an outcome to the caller. False if that is enough.
+// Hands the outcome of a run to the caller. False if the caller wants no more.
 static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker take,
                       void *context)
 {
@@ -60,8 +63,9 @@ static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker ta
     return take(context, &outcome) == 0;
 }
 
-// Runs all in turns, each handed over before the next begins; of one that was stopped
-// those that were done.
+// Computes all runs in turns, and hands the outcomes of each turn to the caller before
+// the next one begins. Of a turn that is stopped, the outcomes of the completed runs are
+// handed over.
 static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker take,
                       void *context, impactlab_error *error)
 {
@@ -72,18 +76,20 @@ static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the outcomes");
     }
 
+    // a turn: compute, then hand over
     status code = STATUS_OK;
     for (v->first = 0; code == STATUS_OK && v->first < count; v->first += turn) {
-        const size_t now = count - v->first < turn ? count - v->first : turn;
+        const size_t runs_left = count - v->first;
+        const size_t run_count = runs_left < turn ? runs_left : turn;
         const batch runs = {.context = v,
-                            .count = now,
+                            .count = run_count,
                             .make = vary,
                             .summaries = summaries,
-                            .tick = v->stop.ask != NULL ? look_up : NULL,
-                            .tick_interval = ASKED,
+                            .tick = v->stop.ask != NULL ? ask_to_stop : NULL,
+                            .tick_interval = ASKING_INTERVAL,
                             .abandon = &v->stopped};
         code = batch_run(&runs, jobs, NULL);
-        for (size_t i = 0; code == STATUS_OK && i < now; i++) {
+        for (size_t i = 0; code == STATUS_OK && i < run_count; i++) {
             const bool done = summaries[i].status != STATUS_STOPPED;
             if (done && !hand_over(&summaries[i], v->first + i, take, context)) {
                 code = STATUS_STOPPED;
@@ -103,6 +109,7 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths,
                     size_t path_count, const double *values, size_t count, int jobs,
                     impactlab_outcome_taker take, void *context, impactlab_error *error)
 {
+    // what is needed of the arguments
     API_NEEDS(error, handle);
     if (take == NULL) {
         return api_missing(error, "take", 0);
@@ -113,6 +120,8 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths,
     if (path_count > 0 && count > 0) {
         API_NEEDS(error, values);
     }
+
+    // as many threads as asked for, by default one for each processor
     const long wanted = jobs < 1 ? sysconf(_SC_NPROCESSORS_ONLN) : jobs;
     if (wanted < 1) {
         jobs = 1;
@@ -122,7 +131,7 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths,
         jobs = (int)wanted;
     }
 
-    // which parameters
+    // the parameters that vary
     int code = IMPACTLAB_OK;
     SCOPED(free_kept) sweep_axis *axes = calloc(path_count + 1, sizeof *axes);
     if (axes == NULL) {
@@ -136,7 +145,7 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths,
         }
     }
 
-    // all values before anything is run
+    // every row of values is checked before anything is run
     varied v = {.base = &handle->scenario,
                 .axes = axes,
                 .values = values,
@@ -186,6 +195,7 @@ int impactlab_modes(const impactlab_scenario *handle, int hub_locked, int tip_pi
             "frequencies, expected arm.model = corrected");
     }
 
+    // frequencies, and behind them n shapes of n angles
     arm a;
     arm_init(&a, &handle->scenario.parameters);
     SCOPED(free_kept) double *all = calloc(n + n * n, sizeof *all);

@@ -9,6 +9,7 @@ static impactlab_parameter parameter_rows[PARAMETERS_AT_MOST];
 static impactlab_signal signal_rows[SIGNALS_AT_MOST];
 static impactlab_quantity quantity_rows[SUMMARY_NUMBERS];
 
+// A parameter as the library shows it.
 static impactlab_parameter parameter_row(const parameter_info *info)
 {
     static const char *const types[] = {
@@ -26,7 +27,7 @@ static impactlab_parameter parameter_row(const parameter_info *info)
         row.choices = info->choices;
     }
 
-    // a text has neither a number to begin with nor bounds
+    // a text has no number as its default, and no bounds
     if (!parameter_is_text(info)) {
         row.initial = info->default_corrected;
         row.minimum = info->minimum;
@@ -35,15 +36,15 @@ static impactlab_parameter parameter_row(const parameter_info *info)
     return row;
 }
 
-// The rows point into the tables of the program, which say the same under other names;
-// filled in before the program begins.
-static __attribute__((constructor)) void fill(void)
+// Fills in the library's tables before the program begins. Their rows point to the texts
+// of the program's own tables, which have the same contents under other names.
+static __attribute__((constructor)) void fill_tables(void)
 {
     for (int i = 0; i < parameter_count; i++) {
         parameter_rows[i] = parameter_row(&parameter_table[i]);
     }
 
-    // columns of a run, then what sums it up
+    // the signals of a run, and the quantities of its summary
     for (int i = 0; i < signal_count; i++) {
         const signal_info *info = &signal_table[i];
         signal_rows[i] =

@@ -8,13 +8,12 @@
 #include "src/rig/rig.h"
 #include "src/tables/settings.h"
 
+// Frees the steps of a lesson and their texts; nothing else of a lesson is allocated.
 static void finish_lesson(lesson *l)
 {
     for (int i = 0; i < l->step_count * LESSON_TEXTS; i++) {
         free(l->steps[i / LESSON_TEXTS].texts[i % LESSON_TEXTS]);
     }
-
-    // nothing else of a lesson is allocated
     free(l->steps);
     *l = (lesson){0};
 }
@@ -39,7 +38,8 @@ void keep_first_fault(void *context, const char *sentence)
     }
 }
 
-// A copy on the heap of what is there; *good is false without memory.
+// A copy of `size` bytes on the heap, or NULL if there is no original. Sets *good to
+// false without memory.
 static void *copy_of(const void *original, size_t size, bool *good)
 {
     void *copy = original != NULL ? malloc(size + 1) : NULL;
@@ -61,7 +61,7 @@ status scenario_copy(scenario *copy, const scenario *s)
     bool good = true;
     *copy = *s;
 
-    // all of them, even after a failure: none may still be the original's
+    // every pointer is replaced, even after a failure: none may remain the original's
     copy->name = text_of(s->name, &good);
     copy->file = text_of(s->file, &good);
     copy->title = text_of(s->title, &good);
@@ -71,6 +71,8 @@ status scenario_copy(scenario *copy, const scenario *s)
     copy->expectations =
         copy_of(s->expectations, (size_t)s->expectation_count * sizeof *s->expectations,
                 &good);
+
+    // the lesson's steps, and the texts of each
     copy->lesson.steps =
         copy_of(l->steps, (size_t)l->step_count * sizeof *l->steps, &good);
     if (copy->lesson.steps != NULL) {
@@ -86,16 +88,16 @@ status scenario_copy(scenario *copy, const scenario *s)
     // an incomplete copy is discarded
     if (!good) {
         scenario_finish(copy);
+        return STATUS_NO_MEMORY;
     }
-    if (good) {
-        return STATUS_OK;
-    }
-    return STATUS_NO_MEMORY;
+    return STATUS_OK;
 }
 
-// Gives one parameter of p its value; f holds the sentence without its beginning.
+// Carries out one assignment, PATH=VALUE, on a set of parameters. The sentence in f lacks
+// the assignment itself, which the caller puts before it.
 static status assign(parameters *p, const char *assignment, fault *f)
 {
+    // PATH ends at the first equals sign
     char path[128], room[PARAMETER_TEXT_SIZE];
     const char *value;
     size_t length = strcspn(assignment, "=");
@@ -103,6 +105,7 @@ static status assign(parameters *p, const char *assignment, fault *f)
              STATUS_BAD_ARGUMENT,
              "not an assignment, expected PATH=VALUE such as arm.k2=49.2");
 
+    // the parameter and its value; a single setting has its value written into `room`
     snprintf(path, sizeof path, "%.*s", (int)length, assignment);
     value = assignment + length + 1;
     const int index = settings_look_up_value(path, &value, room, f);
@@ -112,17 +115,18 @@ static status assign(parameters *p, const char *assignment, fault *f)
     return parameter_set_text(p, index, value, f);
 }
 
-// Resolves parameters that were changed, and checks that the scenario's script goes with
-// them.
+// Resolves changed parameters and checks that the scenario's script is valid with them.
 static status resolve_changed(const scenario *s, parameters *p, fault *f)
 {
+    // the parameters, and the locks and timing that the script sets
     scenario changed = *s;
     TRY(parameters_resolve(p, f));
     changed.parameters = *p;
     TRY(scenario_check_locks(&changed, controller_of(p->control.law), f));
     TRY(scenario_check_timing(&changed, f));
 
-    // what the script sets may change, and a push acts on the corrected arm only
+    // every parameter that the script sets may change in this run; pushes need the
+    // corrected model
     const action *push = NULL;
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
@@ -162,7 +166,8 @@ status scenario_with(const scenario *base, const parameter_change *changes, size
     return scenario_take_parameters(changed, &p, f);
 }
 
-// Applies all at once: each is read once, and they are resolved together. All or nothing.
+// Applies all assignments at once: each is read, then all are resolved together. If that
+// fails, nothing is changed.
 static status override_together(scenario *s, char *const *assignments, int count,
                                 fault *f)
 {
@@ -190,8 +195,8 @@ status scenario_override(scenario *s, const char *assignment, fault *f)
     return result;
 }
 
-// Applies one after the other. Returns how many failed, each told to report (may be
-// NULL).
+// Applies the assignments one after the other. Returns how many failed; `report`, which
+// may be NULL, gets a sentence for each.
 static int override_each(scenario *s, char *const *assignments, int count,
                          fault_handler report, void *context)
 {
@@ -210,9 +215,9 @@ static int override_each(scenario *s, char *const *assignments, int count,
     return failures;
 }
 
-// The text of all settings beside a path of one of them would mean what their order
-// decides.
-static bool settings_twice(char *const *assignments, int count)
+// Whether assignments set both control.settings as a whole and a single setting,
+// control.settings.NAME: what they mean together would depend on their order.
+static bool sets_settings_twice(char *const *assignments, int count)
 {
     static const char path[] = "control.settings";
     bool whole = false, one = false;
@@ -230,7 +235,9 @@ status scenario_override_all(scenario *s, char *const *assignments, int count,
                              fault_handler report, void *context)
 {
     assert(count >= 0);
-    if (settings_twice(assignments, count)) {
+
+    // what contradicts itself
+    if (sets_settings_twice(assignments, count)) {
         s->refused = (fault_place){.path = setting_info.path};
         if (report != NULL) {
             report(context,
@@ -239,18 +246,20 @@ status scenario_override_all(scenario *s, char *const *assignments, int count,
         }
         return STATUS_BAD_ARGUMENT;
     }
+
+    // nearly always all can be applied together
     if (override_together(s, assignments, count, NULL) == STATUS_OK) {
         return STATUS_OK;
     }
 
-    // something is wrong: those that can be applied are, so that the faults of the others
-    // are told as long as fewer remain
-    int before, left = count + 1;
+    // something is wrong. To find which assignments, they are applied one by one, again
+    // as long as fewer of them fail than before; those that still fail are reported
+    int failures_before, failures = count + 1;
     do {
-        before = left;
-        left = override_each(s, assignments, count, NULL, NULL);
-    } while (left > 0 && left < before);
-    if (left == 0 || override_each(s, assignments, count, report, context) == 0) {
+        failures_before = failures;
+        failures = override_each(s, assignments, count, NULL, NULL);
+    } while (failures > 0 && failures < failures_before);
+    if (failures == 0 || override_each(s, assignments, count, report, context) == 0) {
         return STATUS_OK;
     }
     return STATUS_BAD_ARGUMENT;

@@ -1,12 +1,12 @@
-// What of a scenario is another than in its file, in words.
+// How a scenario differs from its file, in words.
 #include <assert.h>
 #include <string.h>
 
 #include "src/scenario/effect.h"
 
-enum { MORE = 20 }; // room for " and 160 more" or ", with 160 changes"
+enum { ROOM_FOR_COUNT = 20 }; // bytes for " and 160 more" or ", with 160 changes"
 
-// A parameter with its unit, as a person reads it.
+// Writes a parameter as "path = value unit".
 static void format_value(char *text, size_t size, const char *path, int parameter,
                          const char *value)
 {
@@ -14,8 +14,8 @@ static void format_value(char *text, size_t size, const char *path, int paramete
     snprintf(text, size, "%s = %s%s%s", path, value, unit[0] != '\0' ? " " : "", unit);
 }
 
-// Whether a parameter was given another value than the file's, and that has an effect;
-// text has room for it in words.
+// Whether a parameter was given another value than in the file, with an effect; if so,
+// text gets the change in words.
 static bool is_changed(const scenario *s, int index, char *text, size_t size)
 {
     char value[PARAMETER_TEXT_SIZE], written[PARAMETER_TEXT_SIZE];
@@ -29,7 +29,7 @@ static bool is_changed(const scenario *s, int index, char *text, size_t size)
     return true;
 }
 
-// An action in words.
+// Writes an action in words, such as "motor.voltage = 2 V at 0.4 s".
 static void format_action(char *text, size_t size, const action *a)
 {
     char value[PARAMETER_TEXT_SIZE], set[3 * PARAMETER_TEXT_SIZE], path[ACTION_PATH];
@@ -42,8 +42,8 @@ static void format_action(char *text, size_t size, const action *a)
     snprintf(text, size, "%s at %g s", set, a->time);
 }
 
-// Whether an action was added to the file's script, and has an effect; text has room for
-// it in words.
+// Whether an action was added to the script of the file, and has an effect; if so, text
+// gets the action in words.
 static bool is_added(const scenario *s, int index, char *text, size_t size)
 {
     const action *a = &s->actions[index];
@@ -55,8 +55,8 @@ static bool is_added(const scenario *s, int index, char *text, size_t size)
     return true;
 }
 
-// A change in words, of number i among the parameters and then the actions; false if that
-// is as in the file.
+// Writes change number i in words, counting the parameters and after them the actions of
+// the script. False if that one is as in the file.
 static bool change_in_words(const scenario *s, int i, char *words, size_t size)
 {
     if (i < parameter_count) {
@@ -69,10 +69,10 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
 {
     assert(room > 0);
     size_t used = 0;
-    int more = 0;
+    int left_out = 0;
     text[0] = '\0';
 
-    // the parameters, then what the script does besides; what has no room is counted
+    // as many changes as there is room for, beside the count of the others
     for (int i = 0; i < parameter_count + s->action_count; i++) {
         char words[4 * PARAMETER_TEXT_SIZE];
         if (!change_in_words(s, i, words, sizeof words)) {
@@ -80,8 +80,8 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
         }
 
         const size_t length = strlen(words) + strlen(", with ");
-        if (more > 0 || used + length + MORE > room) {
-            more++;
+        if (left_out > 0 || used + length + ROOM_FOR_COUNT > room) {
+            left_out++;
             continue;
         }
         const char *before = ", ";
@@ -91,11 +91,11 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
         used += (size_t)snprintf(text + used, room - used, "%s%s", before, words);
     }
 
-    // how many had none
-    if (more > 0 && used > 0) {
-        snprintf(text + used, room - used, " and %d more", more);
-    } else if (more > 0 && room >= MORE) {
-        snprintf(text, room, ", with %d change%s", more, more == 1 ? "" : "s");
+    // how many were left out
+    if (left_out > 0 && used > 0) {
+        snprintf(text + used, room - used, " and %d more", left_out);
+    } else if (left_out > 0 && room >= ROOM_FOR_COUNT) {
+        snprintf(text, room, ", with %d change%s", left_out, left_out == 1 ? "" : "s");
     }
     return text;
 }

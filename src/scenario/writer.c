@@ -1,4 +1,4 @@
-// Writing a scenario as a file that gives it again.
+// Writes a scenario as a file; reading that file gives the same scenario.
 #include <string.h>
 
 #include "src/tables/signals.h"
@@ -7,8 +7,8 @@
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 
-// The escape of a character that YAML takes for a line's end or changes, NULL for any
-// other; its bytes in *length.
+// The escape sequence of the character at c, if YAML would read that as the end of a line
+// or otherwise change it; NULL for any other character. *length is its number of bytes.
 static const char *yaml_escape(const char *c, size_t *length)
 {
     static const struct {
@@ -25,8 +25,9 @@ static const char *yaml_escape(const char *c, size_t *length)
     return NULL;
 }
 
-// What stands between quotation marks so that YAML reads it back.
-static void write_inside(FILE *stream, const char *text)
+// Writes the content of a quoted text so that YAML reads the same text. What YAML cannot
+// hold is replaced: a control character by a blank, a byte that is no character by "?".
+static void write_quoted_content(FILE *stream, const char *text)
 {
     size_t length;
     for (const char *c = text; *c != '\0'; c += length) {
@@ -45,14 +46,16 @@ static void write_inside(FILE *stream, const char *text)
     }
 }
 
-// A text between quotation marks.
+// Writes a text between quotation marks.
 static void write_text(FILE *stream, const char *text)
 {
     fputc('"', stream);
-    write_inside(stream, text);
+    write_quoted_content(stream, text);
     fputc('"', stream);
 }
 
+// Writes a parameter's value as a scenario file has it: texts quoted, lists in brackets,
+// numbers with their unit.
 static void write_value(FILE *stream, const parameters *p, int index)
 {
     const parameter_info *info = &parameter_table[index];
@@ -67,8 +70,8 @@ static void write_value(FILE *stream, const parameters *p, int index)
     }
 }
 
-// The groups of the table in its order, each with those of its parameters that were
-// given.
+// Writes the parameters that were given, under the key of their group, in the order of
+// the parameter table.
 static void write_parameters(FILE *stream, const parameters *p)
 {
     const char *group = "";
@@ -79,7 +82,7 @@ static void write_parameters(FILE *stream, const parameters *p)
             continue;
         }
 
-        // the table has the parameters of a group side by side
+        // the first one of its group, whose parameters are neighbours in the table
         if (strncmp(group, path, length + 1) != 0) {
             fprintf(stream, "%.*s:\n", (int)length, path);
             group = path;
@@ -90,17 +93,19 @@ static void write_parameters(FILE *stream, const parameters *p)
     }
 }
 
+// Writes the script.
 static void write_actions(FILE *stream, const scenario *s)
 {
     char text[NUMBER_TEXT];
 
-    // what a shortened run no longer comes to is no part of it, and a file must not ask
-    // for it
+    // actions after the end of the run, which may have been shortened, are left out: a
+    // file may not have them
     int count = s->action_count;
     while (count > 0 && s->actions[count - 1].time > s->parameters.run.duration) {
         count--;
     }
 
+    // each action at its time
     fputs(count > 0 ? "script:\n" : "", stream);
     for (int i = 0; i < count; i++) {
         const action *a = &s->actions[i];
@@ -129,7 +134,7 @@ static void write_actions(FILE *stream, const scenario *s)
 
 // --- lessons ---------------------------------------------------------------------------
 
-// A list of at least one text behind a key.
+// Writes a key and a list of at least one text.
 static void write_texts(FILE *stream, const char *key, char *const *texts, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -139,7 +144,7 @@ static void write_texts(FILE *stream, const char *key, char *const *texts, int c
     fputc(']', stream);
 }
 
-// A number of a map.
+// Writes a key and its number.
 static void write_entry(FILE *stream, const char *key, double value)
 {
     char text[NUMBER_TEXT];
@@ -147,7 +152,8 @@ static void write_entry(FILE *stream, const char *key, double value)
     fprintf(stream, "%s: %s", key, text);
 }
 
-// What has to be so before the step is done.
+// Writes the condition that must hold before a step is done; a step that is only read has
+// none.
 static void write_check(FILE *stream, const parameters *p, const lesson_step *step)
 {
     parameters scratch = *p;
@@ -184,6 +190,7 @@ static void write_check(FILE *stream, const parameters *p, const lesson_step *st
     fputs("}\n", stream);
 }
 
+// Writes a step of the lesson: what it says, its check, and what may be left out.
 static void write_step(FILE *stream, const parameters *p, const lesson_step *step)
 {
     fputs("    - say: ", stream);
@@ -191,7 +198,7 @@ static void write_step(FILE *stream, const parameters *p, const lesson_step *ste
     fputc('\n', stream);
     write_check(stream, p, step);
 
-    // what may be left out
+    // texts and commands that may be left out
     const char *const keys[] = {"hint", "then"}, *const texts[] = {step->hint,
                                                                    step->then};
     for (int i = 0; i < 2; i++) {
@@ -207,18 +214,23 @@ static void write_step(FILE *stream, const parameters *p, const lesson_step *ste
     }
 }
 
+// Writes the lesson: the parameters that matter, then the steps.
 static void write_lesson(FILE *stream, const scenario *s)
 {
     const lesson *l = &s->lesson;
     if (l->step_count == 0) {
         return;
     }
+
+    // a list of parameters in brackets, if there are any
     fputs("lesson:\n", stream);
     for (int i = 0; i < l->parameter_count; i++) {
         fprintf(stream, "%s%s%s", i == 0 ? "  parameters: [" : ", ",
                 parameter_table[l->parameters[i]].path,
                 i == l->parameter_count - 1 ? "]\n" : "");
     }
+
+    // the steps
     fputs("  steps:\n", stream);
     for (int i = 0; i < l->step_count; i++) {
         write_step(stream, &s->parameters, &l->steps[i]);
@@ -227,13 +239,14 @@ static void write_lesson(FILE *stream, const scenario *s)
 
 void scenario_write(FILE *stream, const scenario *s)
 {
-    // prose; the title goes on with what was changed, as far as a title may
+    // the title with the changes behind it, as far as a title may be long, and
+    // description
     char changes[SCENARIO_TITLE + 1];
     const size_t length = strlen(s->title);
     const size_t room = length < SCENARIO_TITLE ? SCENARIO_TITLE + 1 - length : 1;
     fputs("title: \"", stream);
-    write_inside(stream, s->title);
-    write_inside(stream, scenario_changes_within(s, changes, room));
+    write_quoted_content(stream, s->title);
+    write_quoted_content(stream, scenario_changes_within(s, changes, room));
     fputc('"', stream);
     if (s->description[0] != '\0') {
         fputs("\ndescription: ", stream);
@@ -241,13 +254,14 @@ void scenario_write(FILE *stream, const scenario *s)
     }
     fputc('\n', stream);
 
-    // what to look at
+    // the signals of the panes
     for (int i = 0; i < s->pane_count; i++) {
         fprintf(stream, "%s%s%s", i == 0 ? "panes: [" : ", ",
                 signal_table[s->panes[i]].name, i == s->pane_count - 1 ? "]\n" : "");
     }
 
-    // what runs; expectations hold for the scenario as it was, and are left out
+    // parameters, script and lesson; expectations are left out, as they hold for the
+    // scenario in its original file
     write_parameters(stream, &s->parameters);
     write_actions(stream, s);
     write_lesson(stream, s);

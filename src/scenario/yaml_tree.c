@@ -5,8 +5,8 @@
 #include <string.h>
 #include <yaml.h>
 
-// A map or list whose end is yet to come, the key that waits for its value, and where the
-// next child goes.
+// A map or list that the parser is within: its node, a key whose value is still to come
+// (NULL: none), and the link that the next child is put into.
 typedef struct open_node {
     tree_node *node, *key, **link;
 } open_node;
@@ -15,10 +15,10 @@ typedef struct builder {
     yaml_parser_t parser;
     const char *text; // without a byte order mark
     size_t length;
-    int nodes;
+    int nodes; // made so far
     tree_node *root;
-    open_node open[TREE_MAX_DEPTH];
-    int depth; // of them
+    open_node open[TREE_MAX_DEPTH]; // the maps and lists that are open, outermost first
+    int depth;                      // how many are open
     fault *fault;
 } builder;
 
@@ -29,6 +29,7 @@ typedef struct builder {
 #define refuse_at(b, mark, ...)                                                          \
     refuse(b, (int)(mark).line + 1, (int)(mark).column + 1, __VA_ARGS__)
 
+// Records that there is no memory. Always false.
 static bool refuse_for_memory(const builder *b)
 {
     fault_set_place(b->fault, STATUS_NO_MEMORY, 1, 1, "%s",
@@ -36,8 +37,8 @@ static bool refuse_for_memory(const builder *b)
     return false;
 }
 
-// Refuses at a byte of the text; a column counts characters, that is, bytes that begin
-// one.
+// Records a fault at a byte of the text. Lines end with \n, \r or both. Columns count
+// characters: bytes 10xxxxxx of UTF-8 continue one and are not counted.
 static bool refuse_at_byte(const builder *b, size_t offset, const char *sentence)
 {
     int line = 1, column = 1;
@@ -55,8 +56,8 @@ static bool refuse_at_byte(const builder *b, size_t offset, const char *sentence
     return refuse(b, line, column, "%s", sentence);
 }
 
-// The byte that a mark points at, 0 at the end; a mark counts characters, the text is in
-// bytes.
+// The byte of the text that a mark of the parser points at; 0 at the end. A mark is an
+// index of characters, so that bytes which continue one are not counted.
 static char byte_at(const builder *b, yaml_mark_t mark)
 {
     size_t characters = 0;
@@ -98,10 +99,11 @@ static bool refuse_syntax(const builder *b)
     return refuse(b, line, column, "not valid YAML: %s", problem);
 }
 
-// What a scenario may not use although YAML has it, as a sentence, or NULL.
+// The sentence for a feature of YAML that scenarios may not use: an alias, an anchor or a
+// tag. NULL if the event has none of them.
 static const char *forbidden(const yaml_event_t *event)
 {
-    // a scalar, a list and a map keep their anchor and tag in one place
+    // events of scalars, lists and maps begin with the same fields, anchor and tag
     if (event->type == YAML_ALIAS_EVENT) {
         return "an alias (*name) is not allowed here, expected the value itself";
     }
@@ -114,7 +116,7 @@ static const char *forbidden(const yaml_event_t *event)
     return NULL;
 }
 
-// What begins with an event.
+// The kind of node that begins with an event.
 static tree_kind kind_of_event(const yaml_event_t *event)
 {
     if (event->type == YAML_SCALAR_EVENT) {
@@ -133,6 +135,8 @@ static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
     const bool scalar = event->type == YAML_SCALAR_EVENT;
     const char *value = scalar ? (const char *)event->data.scalar.value : "";
     const size_t length = scalar ? event->data.scalar.length : 0;
+
+    // what is not allowed, and limits
     const char *reason = forbidden(event);
     if (reason != NULL) {
         return refuse_at(b, event->start_mark, "%s", reason);
@@ -150,6 +154,7 @@ static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
                          "too many keys and values, expected at most %d", TREE_MAX_NODES);
     }
 
+    // the node, with a copy of its text
     tree_node *node = calloc(1, sizeof *node);
     char *text = node != NULL && scalar ? strndup(value, length) : NULL;
     if (node == NULL || (scalar && text == NULL)) {
@@ -166,7 +171,8 @@ static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
     return true;
 }
 
-// Puts a node where it belongs; what follows goes below it if it is a map or list.
+// Adds a node to the innermost open map or list, or as the root. A node that is a map or
+// list is then open itself.
 static void add_node(builder *b, tree_node *node)
 {
     open_node *parent = b->depth > 0 ? &b->open[b->depth - 1] : NULL;
@@ -186,7 +192,7 @@ static void add_node(builder *b, tree_node *node)
     }
 }
 
-// False after a fault.
+// Takes the next event of the parser into the tree. False after a fault.
 static bool take_event(builder *b, const yaml_event_t *event)
 {
     tree_node *node = NULL;
@@ -212,9 +218,10 @@ static bool take_event(builder *b, const yaml_event_t *event)
     }
 }
 
-// Reads all events; NULL after a fault.
+// Builds the tree from all events of the parser; NULL after a fault.
 static tree_node *build_document(builder *b)
 {
+    // one event after the other
     bool good = true, ended = false;
     while (good && !ended) {
         yaml_event_t event;
@@ -230,7 +237,7 @@ static tree_node *build_document(builder *b)
         return b->root;
     }
 
-    // keys without a value hang on nothing
+    // keys that wait for their value are not in the tree yet
     for (int i = 0; i < b->depth; i++) {
         tree_free(b->open[i].key);
     }

@@ -8,6 +8,7 @@
 
 #include "src/tables/parameters_parts.h"
 
+// The features `bits` if a condition holds, else none.
 static feature_set when(bool condition, feature_set bits)
 {
     if (condition) {
@@ -16,6 +17,7 @@ static feature_set when(bool condition, feature_set bits)
     return 0;
 }
 
+// The features of the model, the arm's links and joints, and the method.
 static feature_set arm_features(const parameters *p)
 {
     const arm_parameters *a = &p->arm;
@@ -31,6 +33,7 @@ static feature_set arm_features(const parameters *p)
            method[p->method.name];
 }
 
+// The features of motor and amplifier: what drives the motor, and what limits it.
 static feature_set motor_features(const parameters *p)
 {
     const motor_parameters *m = &p->motor;
@@ -43,6 +46,7 @@ static feature_set motor_features(const parameters *p)
            when(volts && m->current_limit > 0, HAS(LIMITED));
 }
 
+// The features of the wall, of its law of contact and of its motion; none without a wall.
 static feature_set wall_features(const wall_parameters *w)
 {
     static const feature_set contact[] = {0, HAS(KELVIN_VOIGT), HAS(HUNT_CROSSLEY)};
@@ -57,6 +61,7 @@ static feature_set wall_features(const wall_parameters *w)
            when(struck, HAS(STRUCK)) | when(struck && w->restitution > 0, HAS(BOUNCES));
 }
 
+// The features of the rig: the kind of law, sensors that are fitted, and chance.
 static feature_set rig_features(const parameters *p)
 {
     const control_parameters *c = &p->control;
@@ -75,6 +80,7 @@ static feature_set rig_features(const parameters *p)
            when(c->jitter > 0 || (noise && !s->ideal), HAS(CHANCE));
 }
 
+// The features of the forces in force_list.h that act: those whose amount is not zero.
 static feature_set force_features(const parameters *p)
 {
     feature_set features = 0;
@@ -93,13 +99,14 @@ feature_set features_of(const parameters *p)
 
 // --- which parameters act --------------------------------------------------------------
 
-// Parameters act where a set of features has one bit at least of each of their rules. The
-// first rule that is not met says why they do not.
+// A parameter acts if each rule whose patterns fit its path is met. A rule is met by
+// features that have at least one of the bits in `any`. The first rule that is not met
+// says why the parameter does not act.
 typedef struct rule {
-    const char *paths; // patterns with blanks between them
+    const char *paths; // patterns of paths, with blanks between them
     feature_set any;
     const char *why; // half a sentence
-    bool refused;    // another value than the default may not be given then
+    bool refused;    // if not met, any value but the default is refused
 } rule;
 
 #define ONE_LINK "one link has no joint"
@@ -221,19 +228,20 @@ static const rule rules[] = {
      "there is no sensor.tachometer_ripple"},
 };
 
-enum { RULES = sizeof rules / sizeof rules[0], NAME = 64 };
+enum { RULES = sizeof rules / sizeof rules[0], PATTERN_SIZE = 64 };
 _Static_assert(RULES < 64, "a word has a bit for each rule, and the last bit");
 
+// The last bit of a parameter's rules says that they have been looked up.
 #define LOOKED_UP (UINT64_C(1) << 63)
 
-// Whether a pattern among several, with blanks between them, fits a path.
-static bool one_fits(const char *patterns, const char *path)
+// Whether one of several patterns, which have blanks between them, fits a path.
+static bool any_pattern_fits(const char *patterns, const char *path)
 {
     for (const char *rest = patterns; *rest != '\0';) {
         const size_t length = strcspn(rest, " ");
-        char pattern[NAME] = "";
+        char pattern[PATTERN_SIZE] = "";
 
-        // most are of another group, by their first letter
+        // most patterns are of another group and differ in the first letter
         if (rest[0] == path[0]) {
             assert(length < sizeof pattern);
             memcpy(pattern, rest, length);
@@ -246,8 +254,8 @@ static bool one_fits(const char *patterns, const char *path)
     return false;
 }
 
-// The rules of a parameter, a bit each. They are looked up once; threads that meet here
-// find the same.
+// The rules whose patterns fit a parameter's path, bit i for rule i. They are looked up
+// once and then remembered; threads that look them up at the same time find the same.
 static uint64_t rules_of(int parameter)
 {
     static _Atomic uint64_t known[sizeof(((parameters *)0)->set)];
@@ -255,8 +263,10 @@ static uint64_t rules_of(int parameter)
     if (found != 0) {
         return found;
     }
+
+    // the first time
     for (int i = 0; i < RULES; i++) {
-        if (one_fits(rules[i].paths, parameter_table[parameter].path)) {
+        if (any_pattern_fits(rules[i].paths, parameter_table[parameter].path)) {
             found |= UINT64_C(1) << i;
         }
     }
@@ -286,7 +296,7 @@ const char *features_inert(feature_set features, int parameter)
     return NULL;
 }
 
-// Whether a parameter brings a force of force_list.h that does not act with these
+// Whether a parameter belongs to a force of force_list.h that does not act with these
 // features.
 static bool brings_no_force(feature_set features, const char *path)
 {
@@ -322,20 +332,22 @@ static const char *why_refused(feature_set features, int parameter)
 
 status features_check(const parameters *p, fault *f)
 {
-    // what the law, the script and the choice of an engine have is refused elsewhere
+    // without the features of the law, of the script and of the engine's choice: what
+    // those do not allow is refused elsewhere
     const feature_set features = features_of(p);
-    parameters other;
-    parameters_defaults(&other, ARM_CORRECTED);
+    parameters defaults;
+    parameters_defaults(&defaults, ARM_CORRECTED);
     for (int i = 0; i < parameter_count; i++) {
         const char *why = p->set[i] ? why_refused(features, i) : NULL;
         if (why == NULL) {
             continue;
         }
 
-        char value[PARAMETER_TEXT_SIZE], usual[PARAMETER_TEXT_SIZE];
+        // any other value than the default is refused
+        char value[PARAMETER_TEXT_SIZE], default_value[PARAMETER_TEXT_SIZE];
         parameter_format(p, i, value, sizeof value);
-        parameter_format(&other, i, usual, sizeof usual);
-        if (strcmp(value, usual) != 0) {
+        parameter_format(&defaults, i, default_value, sizeof default_value);
+        if (strcmp(value, default_value) != 0) {
             const char *path = parameter_table[i].path;
             return fault_set_at(f, STATUS_BAD_SCENARIO, path, "%s = %s, but %s", path,
                                 value, why);

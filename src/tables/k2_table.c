@@ -7,7 +7,8 @@
 #include "src/base/numbers.h"
 #include "src/tables/parameters_parts.h"
 
-// Reads "FORCE:K2" at the start of text; *rest is what follows it and blanks.
+// Reads an entry "FORCE:K2" at the start of text, a force from 0 on and a positive k2.
+// *rest is what follows the entry and blanks. False if there is no such entry.
 static bool read_entry(const char *text, double *force, double *k2, const char **rest)
 {
     return decimal_read(text, force, rest) && **rest == ':' &&
@@ -37,7 +38,7 @@ status k2_table_read(k2_table *t, const char *text, fault *f)
                 length, entry);
         }
 
-        // in growing order, so that there is one k2 between any two of them
+        // forces grow, so that interpolation between neighbours gives one k2
         if (i > 0 && !(t->force[i] > t->force[i - 1])) {
             return fault_set_at(
                 f, STATUS_BAD_SCENARIO, "control.k2_table",
@@ -65,6 +66,7 @@ bool k2_table_write(const k2_table *t, char *text, size_t size)
 double k2_table_at(const k2_table *t, double force)
 {
     assert(t->count > 0);
+    // the first entry with a larger force; outside the table the nearest k2 holds
     int above = 0;
     while (above < t->count && t->force[above] <= force) {
         above++;

@@ -6,9 +6,9 @@
 #include "src/base/plain_math.h"
 #include "src/tables/parameters.h"
 
-#define FEWEST_DECADES 3    // from this many on a range is logarithmic
-#define MOST_DECADES   6    // a wider range shows those near the default
-#define WIDE           40.0 // times its default a range is shown in part
+#define FEWEST_DECADES 3    // a range of at least as many decades is logarithmic
+#define MOST_DECADES   6    // of a wider range only decades near the default are shown
+#define WIDE           40.0 // a range above this many times the default is cut
 
 // 10^k for a whole number k.
 static double power_of_ten(int k)
@@ -60,6 +60,8 @@ bool parameter_usual_range(int parameter, double value, double *range_low,
         !isfinite(value)) {
         return false;
     }
+
+    // the default, and the range of the table
     parameters defaults;
     parameters_defaults(&defaults, ARM_CORRECTED);
     double usual = fabs(parameter_get(&defaults, parameter));
@@ -68,17 +70,18 @@ bool parameter_usual_range(int parameter, double value, double *range_low,
         usual = 0;
     }
 
-    // decades: all of them, or some near the default up to the value
+    // a logarithmic range is cut to two decades on both sides of the default, and further
+    // to the value
     *logarithmic = low > 0 && high / low >= power_of_ten(FEWEST_DECADES) * (1 - 1e-9);
-    const double size = fmax(usual, fabs(value));
+    const double magnitude = fmax(usual, fabs(value));
     if (*logarithmic && high / low > power_of_ten(MOST_DECADES) * (1 + 1e-9) &&
         usual > 0) {
         const int below = decade_of(usual), above = below + (power_of_ten(below) < usual);
         low = fmax(low, fmin(value, power_of_ten(below - 2)));
         high = fmin(high, fmax(value, power_of_ten(above + 2)));
-    } else if (!*logarithmic && high - low > WIDE * fmax(size, 1e-12)) {
-        // one much wider than suits the default, or the value once that is far from it,
-        // in part
+    } else if (!*logarithmic && high - low > WIDE * fmax(magnitude, 1e-12)) {
+        // a linear range that is much wider than default and value is cut to a round
+        // number above four times the default, or above the value if that is larger
         double reach = info->type == PARAMETER_REAL ? 0.1 : 10;
         if (usual > 0) {
             reach = 4 * usual;

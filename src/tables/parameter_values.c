@@ -8,16 +8,19 @@
 #include "src/tables/parameters_parts.h"
 #include "src/tables/settings.h"
 
-#define LEAST 1e-100 // of what is not 0: squares and quotients of it are numbers, too
+// The smallest value but 0, so that its square and its quotients do not overflow or
+// vanish.
+#define LEAST 1e-100
 
-// The row of an index that a look-up gave.
-static const parameter_info *row_of(int index)
+// The row of the parameter table with an index.
+static const parameter_info *info_of_parameter(int index)
 {
     assert(index >= 0 && index < parameter_count);
     return &parameter_table[index];
 }
 
-// Puts a number where the parameter lies; a text gets its default.
+// Stores a number as the value of a parameter, in the parameter's type. A text or list
+// gets its default instead.
 static void store(parameters *p, const parameter_info *info, double value)
 {
     void *at = (char *)p + info->offset;
@@ -36,7 +39,7 @@ static void store(parameters *p, const parameter_info *info, double value)
 
 double parameter_get(const parameters *p, int index)
 {
-    const parameter_info *info = row_of(index);
+    const parameter_info *info = info_of_parameter(index);
     const void *at = (const char *)p + info->offset;
     if (info->type == PARAMETER_REAL) {
         return *(const double *)at;
@@ -69,7 +72,8 @@ void parameters_defaults(parameters *p, arm_model_kind model)
     parameters_restore_defaults(p);
 }
 
-// Whether a number may be the value of a parameter, or one of a list's.
+// Checks that a number may be the value of a parameter, or a number of its list: finite,
+// whole if it must be, and in range.
 static status check_number(const parameter_info *info, double value, fault *f)
 {
     const char *unit = info->unit, *space = unit[0] ? " " : "";
@@ -99,12 +103,12 @@ static status check_number(const parameter_info *info, double value, fault *f)
 
 status parameter_check_number(int index, double value, fault *f)
 {
-    return check_number(row_of(index), value, f);
+    return check_number(info_of_parameter(index), value, f);
 }
 
 status parameter_set_number(parameters *p, int index, double value, fault *f)
 {
-    const parameter_info *info = row_of(index);
+    const parameter_info *info = info_of_parameter(index);
     if (parameter_is_text(info)) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
                             "%s is a %s and takes no number", info->path,
@@ -116,7 +120,7 @@ status parameter_set_number(parameters *p, int index, double value, fault *f)
     return STATUS_OK;
 }
 
-// Position of text in "a|b|c", or -1.
+// The index of a word among choices such as "a|b|c"; -1 if it is none of them.
 static int choice_index(const char *choices, const char *text, size_t length)
 {
     int index = 0;
@@ -141,7 +145,8 @@ static status parse_quantity(const parameter_info *info, const char *text, doubl
 {
     const char *unit, *digits = text + strspn(text, "+-.");
     if (!decimal_read(text, value, &unit)) {
-        // strtod's own words for what is not finite, with or without YAML's dot
+        // "inf" and "nan" are numbers to C, ".inf" and ".nan" to YAML: they are reported
+        // as not finite
         bool infinite =
             strncasecmp(digits, "inf", 3) == 0 || strncasecmp(digits, "nan", 3) == 0;
         const char *type =
@@ -152,7 +157,7 @@ static status parse_quantity(const parameter_info *info, const char *text, doubl
                             info->maximum, info->unit[0] ? " " : "", info->unit);
     }
 
-    // a unit is no conversion: only the parameter's own may stand there
+    // units are not converted: only the parameter's own is accepted
     if (*unit != '\0' && strcmp(unit, info->unit) != 0) {
         if (info->unit[0] == '\0') {
             return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
@@ -166,11 +171,11 @@ static status parse_quantity(const parameter_info *info, const char *text, doubl
     return STATUS_OK;
 }
 
-// A text of one line is stored as it is.
+// Stores a text of `length` bytes, which must be one line, as the value of a parameter.
 static status store_text(parameters *p, int index, const char *text, size_t length,
                          fault *f)
 {
-    const parameter_info *info = row_of(index);
+    const parameter_info *info = info_of_parameter(index);
     for (size_t i = 0; i < length; i++) {
         if (is_control(text[i])) {
             return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
@@ -187,14 +192,14 @@ static status store_text(parameters *p, int index, const char *text, size_t leng
     return STATUS_OK;
 }
 
-// A list on its way into the parameters, as it is kept: "10, 12, 9".
+// A list that is being put together in the form in which parameters hold it: "10, 12, 9".
 typedef struct list_text {
     char text[PARAMETER_TEXT_SIZE];
-    size_t used;
-    int count;
+    size_t used; // bytes of the text
+    int count;   // numbers in it
 } list_text;
 
-// Appends a number, in as few digits as give it back.
+// Appends a number to a list, with as few digits as identify it.
 static status append_number(list_text *list, const parameter_info *info, double value,
                             fault *f)
 {
@@ -214,18 +219,22 @@ static status append_number(list_text *list, const parameter_info *info, double 
     return STATUS_OK;
 }
 
+// Stores a list as the value of a parameter.
 static void store_list(parameters *p, int index, const list_text *list)
 {
-    memcpy((char *)p + row_of(index)->offset, list->text, sizeof list->text);
+    memcpy((char *)p + info_of_parameter(index)->offset, list->text, sizeof list->text);
     p->set[index] = 1;
 }
 
-// Reads "[10, 12 N m/rad, 9]" and stores it.
+// Reads a list such as "[10, 12 N m/rad, 9]", with or without brackets and units, and
+// stores it.
 static status read_list(parameters *p, int index, const char *text, size_t length,
                         fault *f)
 {
-    const parameter_info *info = row_of(index);
+    const parameter_info *info = info_of_parameter(index);
     list_text list = {.text = ""};
+
+    // without the brackets
     const char *end = text + length;
     if (length > 1 && text[0] == '[' && text[length - 1] == ']') {
         text++;
@@ -243,7 +252,7 @@ static status read_list(parameters *p, int index, const char *text, size_t lengt
             last--;
         }
 
-        // a number of the parameter's unit and range
+        // a number in the parameter's unit and range
         char word[PARAMETER_TEXT_SIZE];
         double value;
         snprintf(word, sizeof word, "%.*s", (int)(last - first), first);
@@ -256,7 +265,8 @@ static status read_list(parameters *p, int index, const char *text, size_t lengt
         TRY(parse_quantity(info, word, &value, f));
         TRY(append_number(&list, info, value, f));
 
-        // a comma at the end lacks the number behind it
+        // after a comma at the very end a number is missing: the comma is read again, as
+        // an empty word
         text = end;
         if (comma != NULL && comma + 1 < end) {
             text = comma + 1;
@@ -272,18 +282,20 @@ status parameter_set_list(parameters *p, int index, const double *numbers, int c
                           fault *f)
 {
     list_text list = {.text = ""};
-    assert(row_of(index)->type == PARAMETER_LIST);
+    assert(info_of_parameter(index)->type == PARAMETER_LIST);
     for (int i = 0; i < count; i++) {
-        TRY(append_number(&list, row_of(index), numbers[i], f));
+        TRY(append_number(&list, info_of_parameter(index), numbers[i], f));
     }
     store_list(p, index, &list);
     return STATUS_OK;
 }
 
-// Reads a word without surrounding space as the number of a parameter that is no text.
+// Reads a word without blanks around it as the value of a parameter that is no text: the
+// index of a choice, 0 or 1 of a boolean, or a number.
 static status parse_word(const parameter_info *info, const char *word, double *value,
                          fault *f)
 {
+    // one of several choices
     size_t length = strlen(word);
     if (info->type == PARAMETER_CHOICE) {
         int choice = choice_index(info->choices, word, length);
@@ -296,7 +308,7 @@ static status parse_word(const parameter_info *info, const char *word, double *v
         return STATUS_OK;
     }
 
-    // of each pair of words the first is false
+    // a boolean: the first word of each pair is false, the second true
     if (info->type == PARAMETER_BOOLEAN) {
         int choice = choice_index("false|true|False|True|FALSE|TRUE|no|yes|off|on|0|1",
                                   word, length);
@@ -311,7 +323,7 @@ static status parse_word(const parameter_info *info, const char *word, double *v
     return parse_quantity(info, word, value, f);
 }
 
-// ".NAME=VALUE" gives one number of control.settings a value.
+// Sets a single number of control.settings from a text ".NAME=VALUE".
 static status set_setting(parameters *p, const char *text, fault *f)
 {
     char name[PARAMETER_TEXT_SIZE];
@@ -327,14 +339,16 @@ static status set_setting(parameters *p, const char *text, fault *f)
 
 status parameter_set_text(parameters *p, int index, const char *text, fault *f)
 {
-    const parameter_info *info = row_of(index);
+    const parameter_info *info = info_of_parameter(index);
 
-    // what counts is what stands between the blanks
+    // blanks around the value do not count
     text += strspn(text, " \t\n\v\f\r");
     size_t length = strlen(text);
     while (length > 0 && is_blank(text[length - 1])) {
         length--;
     }
+
+    // settings, texts and lists have forms of their own
     if (info->offset == setting_info.offset && text[0] == '.') {
         return set_setting(p, text, f);
     }
@@ -345,6 +359,7 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
         return read_list(p, index, text, length, f);
     }
 
+    // any other value is a word
     char word[PARAMETER_TEXT_SIZE];
     if (length == 0 || length >= sizeof word) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s has %s", info->path,
@@ -361,12 +376,12 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
 void parameter_format(const parameters *p, int index, char *text, size_t size)
 {
     assert(size > 0);
-    const parameter_info *info = row_of(index);
+    const parameter_info *info = info_of_parameter(index);
     const double value = parameter_get(p, index);
     const char *choice = info->choices;
     char number[NUMBER_TEXT];
 
-    // as a scenario file would have it
+    // in the form of a scenario file
     if (parameter_is_text(info)) {
         snprintf(text, size, "%s", (const char *)p + info->offset);
     } else if (info->type == PARAMETER_BOOLEAN) {

@@ -11,8 +11,8 @@
 #include "src/tables/control_laws.h"
 #include "src/tables/feature_bits.h"
 
-// What a row of the list comes to: path and place, meaning, type, unit and range, and the
-// rest.
+// The row of the parameter table for an entry of the list: its path and offset, type,
+// unit, range and description, then what only some entries have.
 #define ROW(group, field, meaning, kind, in, from, to, ...)                              \
     {.path = #group "." #field,                                                          \
      .offset = offsetof(parameters, group.field),                                        \
@@ -49,7 +49,7 @@
 #define K1_PRINTED_TABLES 90.0
 #define K1_THESIS         169468.0882
 
-// What the ledger of the event method may lack of the energy put in.
+// The share of the energy put in that the ledger of the event method may be off by.
 #define EVENT_RESIDUAL_BOUND 1e-6
 
 // kT is printed as 0.249092 kg m/A; one kilogram-force is 9.80665 N.
@@ -67,8 +67,8 @@ _Static_assert(sizeof parameter_table / sizeof parameter_table[0] <=
 _Static_assert(sizeof parameter_table / sizeof parameter_table[0] <= UCHAR_MAX + 1,
                "a byte has room for every index");
 
-// The index of the parameter that begins at each offset, filled in before the program
-// begins: resolving a set of parameters asks a hundred times.
+// The index of the parameter that begins at each offset. It is filled in before main, as
+// resolving one set of parameters looks up about a hundred indices.
 static unsigned char index_at[sizeof(parameters)];
 
 static __attribute__((constructor)) void fill_indices(void)
@@ -112,7 +112,7 @@ int parameter_look_up(const char *path, fault *f)
 
 const char *parameter_suggest(const char *path)
 {
-    // the right name, perhaps in a wrong group or in none
+    // the same name in another group, if the path has a wrong group or none
     const char *dot = strrchr(path, '.'), *name = dot != NULL ? dot + 1 : path;
     for (int i = 0; i < parameter_count; i++) {
         if (strcmp(strchr(parameter_table[i].path, '.') + 1, name) == 0) {

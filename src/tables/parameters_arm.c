@@ -1,5 +1,5 @@
-// What of the arm follows from other parameters: lists, stiffnesses, damping, and where
-// it starts.
+// Parameters of the arm that follow from others, and which of them contradict one
+// another: lists, stiffnesses, damping, and where the arm starts.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -57,8 +57,7 @@ void parameters_joint_stiffness(const arm_parameters *a, double *stiffness)
     const bool beam = a->hub_joint == HUB_BEAM;
     const int count = parameter_list_numbers(a->joint_stiffness, listed);
 
-    // the root of its own, and what the list says; else the beam between the middles of
-    // two links
+    // the root at the hub: none, the first of the list, or k1
     if (a->hub_joint == HUB_RIGID) {
         stiffness[0] = 0;
     } else if (beam && count > 0) {
@@ -66,6 +65,9 @@ void parameters_joint_stiffness(const arm_parameters *a, double *stiffness)
     } else {
         stiffness[0] = a->k1;
     }
+
+    // the joints: from the list, else a piece of beam from the middle of one link to the
+    // middle of the next, EI over its length; for equal links that is k2 N / 2
     if (a->link_lengths[0] != '\0') {
         parameters_link_lengths(a, length);
     }
@@ -88,7 +90,8 @@ bool parameters_even_links(const arm_parameters *a)
         return true;
     }
 
-    // the root is half a joint
+    // all lengths and joints equal; the root of a beam is half a piece of it, and so
+    // twice as stiff
     parameters_link_lengths(a, length);
     parameters_joint_stiffness(a, stiffness);
     const double joint = stiffness[a->links - 1];
@@ -99,8 +102,8 @@ bool parameters_even_links(const arm_parameters *a)
     return even;
 }
 
-// Half a cell of beam, length/(2 N) of equal links, lies between the hub and the middle
-// of the first link.
+// The stiffness of the root: that of the beam between the hub and the middle of the first
+// link, EI over half the link's length. For N equal links that is k2 N.
 static double root_stiffness(const arm_parameters *a)
 {
     double numbers[PARAMETER_LIST_MOST];
@@ -113,27 +116,33 @@ static double root_stiffness(const arm_parameters *a)
     return a->k2 * a->links;
 }
 
-// k2 of the uniform beam that bends as far at the tip under a load there, hub held: what
-// the laws and predictors that know two equal links take the arm for. Equal joints are
-// that beam.
+// The k2 of the uniform beam whose tip deflects as far as this arm's under the same load
+// at the tip, with the hub held. Laws and predictors that know two equal links take the
+// arm for that beam. Under a load F at the tip, joint i at distance x_i from it turns by
+// F x_i / k_i and moves the tip by F x_i^2 / k_i; so the joint stiffness of the equal
+// arm, whose joints are at distances y_i, is sum(y_i^2) / sum(x_i^2 / k_i).
 static double equivalent_k2(const arm_parameters *a)
 {
     double length[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST];
-    double reach = a->length, bend = 0, even = 0;
+    double reach = a->length, compliance = 0, lever_squares = 0;
     parameters_link_lengths(a, length);
     parameters_joint_stiffness(a, stiffness);
 
-    // each joint turns by its lever over its stiffness; the root is half a joint
+    // both sums over the joints; the root of a beam is half a joint
     for (int k = 0; k < a->links; k++) {
         const double lever = a->length * (a->links - k) / a->links;
         if (k > 0 || a->hub_joint == HUB_BEAM) {
-            bend += reach * reach / stiffness[k];
-            even += lever * lever * (k > 0 ? 1 : 0.5);
+            compliance += reach * reach / stiffness[k];
+            lever_squares += lever * lever * (k > 0 ? 1 : 0.5);
         }
         reach -= length[k];
     }
-    const double joint =
-        parameters_even_links(a) && a->links > 1 ? stiffness[a->links - 1] : even / bend;
+
+    // equal joints are that beam already, without rounding
+    double joint = lever_squares / compliance;
+    if (parameters_even_links(a) && a->links > 1) {
+        joint = stiffness[a->links - 1];
+    }
     return 2 * joint / a->links;
 }
 
@@ -173,7 +182,7 @@ status parameter_may_change(const parameters *p, int index, fault *f)
     return STATUS_OK;
 }
 
-// The ending of a noun of which there are so many.
+// The ending of a noun after a number: "s" but for 1.
 static const char *plural(int count)
 {
     if (count == 1) {
@@ -182,7 +191,8 @@ static const char *plural(int count)
     return "s";
 }
 
-// The two lists: as long as the arm has joints and links, and given once.
+// Checks the lists of joint stiffnesses and link lengths: one number for each joint or
+// link, and no parameter given beside a list that replaces it.
 static status check_lists(const parameters *p, fault *f)
 {
     const arm_parameters *a = &p->arm;
@@ -191,6 +201,8 @@ static status check_lists(const parameters *p, fault *f)
     const int lengths = parameter_list_numbers(a->link_lengths, numbers);
     const bool beam = a->hub_joint == HUB_BEAM;
     const int joints = a->links - !beam;
+
+    // their lengths
     if (stiffnesses > 0 && stiffnesses != joints) {
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, BLAME2(p, arm.joint_stiffness, arm.links),
@@ -206,7 +218,7 @@ static status check_lists(const parameters *p, fault *f)
                             lengths, plural(lengths), a->links);
     }
 
-    // what a list takes the place of
+    // parameters that a list replaces
     if (stiffnesses > 0 && (IS_SET(p, arm.k2) || IS_SET(p, arm.EI))) {
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, BLAME3(p, arm.joint_stiffness, arm.k2, arm.EI),
@@ -227,8 +239,8 @@ static status check_lists(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// Damping by mode takes the place of damping by stiffness, and has a mode for each
-// number.
+// Checks the damping ratios of modes: they replace damping_ratio, and the arm must have a
+// mode for each.
 static status check_damping(const parameters *p, fault *f)
 {
     const arm_parameters *a = &p->arm;
@@ -258,7 +270,7 @@ static status check_damping(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// Each spring of a list is known as it is.
+// Checks that stiffening is given for equal links and joints only, not beside lists.
 static status check_stiffening(const parameters *p, fault *f)
 {
     const bool stiffnesses = p->arm.joint_stiffness[0] != '\0';
@@ -272,7 +284,8 @@ static status check_stiffening(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// Length, stiffness of the beam and its root, as the lists have them.
+// Checks the lists and makes the arm's length the sum of its link lengths, if they are
+// given.
 static status resolve_lists(parameters *p, fault *f)
 {
     double numbers[PARAMETER_LIST_MOST], length = 0;
@@ -287,7 +300,8 @@ static status resolve_lists(parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// The beam's stiffness is given once, and with it that of its root.
+// Makes k2, EI and the stiffness of the root agree with what was given, which may be one
+// of them only.
 static status resolve_stiffness(parameters *p, fault *f)
 {
     if (IS_SET(p, arm.EI) && IS_SET(p, arm.k2)) {
@@ -296,14 +310,14 @@ static status resolve_stiffness(parameters *p, fault *f)
             "arm.EI and arm.k2 = 2 EI/length are both given, expected one of them");
     }
 
-    // what was given says the rest
+    // k2 from the joints, then EI from k2 or k2 from EI, and the root
     if (p->arm.joint_stiffness[0] != '\0') {
         p->arm.k2 = equivalent_k2(&p->arm);
     }
     parameters_follow(p, IS_SET(p, arm.EI) ? PARAMETER_INDEX(arm.EI)
                                            : PARAMETER_INDEX(arm.k2));
 
-    // a beam has its root's too
+    // the root of a beam has no stiffness of its own
     if (p->arm.hub_joint == HUB_BEAM && IS_SET(p, arm.k1)) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.k1), ROOT_SPRING,
                             p->arm.k1);
@@ -333,8 +347,8 @@ status parameters_resolve_arm(parameters *p, fault *f)
             "expected above 0 or arm.hub_joint = rigid");
     }
 
-    // the straight arm starts in front of the wall, whose gap is length sin(ahead) for
-    // any kind
+    // the straight arm starts in front of the wall: its gap, length sin(ahead) for walls
+    // of every kind, is not negative
     const double ahead = p->wall.angle - p->initial.angle;
     if (p->wall.kind != WALL_NONE &&
         !(ahead >= -START_ROUNDING && ahead <= M_PI + START_ROUNDING)) {

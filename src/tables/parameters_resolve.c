@@ -1,14 +1,17 @@
-// What follows from other parameters, and which of them contradict one another.
+// Resolves parameters: fills in those that follow from others, and refuses those that
+// contradict one another.
 #include <math.h>
 
 #include "src/tables/features.h"
 #include "src/tables/k2_table.h"
 #include "src/tables/parameters_parts.h"
 
-// What the ledger may lack under the methods whose steps are the object of study.
+// The share of the energy put in that the ledger may be off by under the methods with
+// fixed steps, whose errors are an object of study.
 #define STUDY_RESIDUAL_BOUND 1e-2
 
-#define LEAST_FACE           1e-9 // mass of a wall's face that is not none [kg]
+// The smallest mass of a wall's face, if it has one [kg].
+#define LEAST_FACE 1e-9
 
 // Walls nobody has measured: docs/explanation/model.md says where these come from.
 #define SOFT_STIFFNESS   75e3 // Kelvin-Voigt [N/m]
@@ -16,13 +19,15 @@
 #define HERTZ_STIFFNESS  1e6  // Hunt-Crossley [N/m^1.5]
 #define RESTITUTION_LOSS 0.2  // restitution lost by speed, Hunt-Crossley's alpha [s/m]
 
+// Fills in the wall's stiffness and damping for its law of contact, and checks its face
+// and its motion. The damping of Hunt-Crossley's law is 1.5 alpha times the stiffness.
 static status resolve_wall(parameters *p, fault *f)
 {
     wall_parameters *w = &p->wall;
     const bool hertz = w->contact == WALL_HUNT_CROSSLEY, gives = w->contact != WALL_RIGID;
     const bool moves = w->motion != MOTION_NONE && w->kind != WALL_NONE;
 
-    // defaults that depend on the law
+    // defaults that depend on the law of contact
     if (isnan(w->stiffness)) {
         if (hertz) {
             w->stiffness = HERTZ_STIFFNESS;
@@ -38,13 +43,14 @@ static status resolve_wall(parameters *p, fault *f)
         }
     }
 
+    // the face
     if (w->mass > 0 && w->mass < LEAST_FACE) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.mass),
                             "wall.mass = %g kg, expected 0 (none) or at least %g kg",
                             w->mass, LEAST_FACE);
     }
 
-    // what a wall that moves needs, and cannot be combined with
+    // what a moving wall needs, and what it cannot be combined with
     if (moves && w->motion == MOTION_FILE && w->motion_file[0] == '\0') {
         return fault_set_at(f, STATUS_BAD_SCENARIO,
                             BLAME2(p, wall.motion, wall.motion_file),
@@ -68,7 +74,7 @@ static status resolve_wall(parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// The engine asked for by name, which must be able to take the arm.
+// Checks that the engine `pair`, if it is asked for by name, can integrate this arm.
 static status check_engine(const parameters *p, fault *f)
 {
     if (p->method.engine == ENGINE_PAIR && !features_suit_pair(features_of(p))) {
@@ -102,7 +108,7 @@ status parameters_check_timing(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// The controller's texts, and its timing.
+// Checks that a law has the file or program it needs, the table of k2, and the timing.
 static status check_control(const parameters *p, fault *f)
 {
     const control_parameters *c = &p->control;
@@ -126,8 +132,9 @@ static status check_control(const parameters *p, fault *f)
     return parameters_check_timing(p, f);
 }
 
-// Fits a sensor that a controller is to read (`wanted`), which somebody may have left
-// out: `sensor` is the index of its parameter, `chosen` that of the choice that reads it.
+// Fits a sensor if the controller is to read it (`wanted`), and refuses if it was left
+// out on purpose. `sensor` is the index of the parameter that fits the sensor, `chosen`
+// that of the choice which makes the controller read it.
 static status fit_sensor(parameters *p, bool wanted, int chosen, int sensor, bool *fitted,
                          fault *f)
 {
@@ -147,8 +154,11 @@ static status fit_sensor(parameters *p, bool wanted, int chosen, int sensor, boo
     return STATUS_OK;
 }
 
+// Fits the sensors that the chosen sources of impact angle and force need, and checks the
+// piezo sensor's times.
 static status resolve_sensors(parameters *p, fault *f)
 {
+    // the sensors that are read
     const int source = p->control.impact_angle;
     const int angle = PARAMETER_INDEX(control.impact_angle);
     TRY(fit_sensor(p, source == IMPACT_ANGLE_BY_FILM, angle, PARAMETER_INDEX(sensor.film),
@@ -158,7 +168,8 @@ static status resolve_sensors(parameters *p, fault *f)
     TRY(fit_sensor(p, p->sensor.force == FORCE_BY_PIEZO, PARAMETER_INDEX(sensor.force),
                    PARAMETER_INDEX(sensor.piezo), &p->sensor.piezo, f));
 
-    // rise and leak are a band-pass: its lower edge lies below its upper one
+    // the piezo sensor is a band-pass, with a lower edge at 1 / leak time and an upper
+    // one at 1 / rise time
     const double leak = p->sensor.piezo_leak_time, rise = p->sensor.piezo_rise_time;
     if (leak > 0 && leak < rise) {
         return fault_set_at(f, STATUS_BAD_SCENARIO,
@@ -170,7 +181,8 @@ static status resolve_sensors(parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// The printed equations hold for one arm and one method.
+// Checks that the printed model has the one arm, method and wall that its equations are
+// for.
 static status check_printed(const parameters *p, fault *f)
 {
     const arm_parameters *a = &p->arm;
@@ -196,7 +208,8 @@ static status check_printed(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// The listing's habits (errata C3, C5), each of which its own switch overrules.
+// Sets what the program listing of the thesis does differently (errata C3, C5), unless
+// the parameter for it is given.
 static void follow_listing(printed_parameters *printed, const parameters *p)
 {
     if (!IS_SET(p, printed.reevaluation)) {
@@ -209,6 +222,7 @@ static void follow_listing(printed_parameters *printed, const parameters *p)
 
 status parameters_resolve(parameters *p, fault *f)
 {
+    // defaults, of which some depend on program and method
     parameters_restore_defaults(p);
     if (p->printed.program == PROGRAM_LISTING) {
         follow_listing(&p->printed, p);
@@ -216,6 +230,8 @@ status parameters_resolve(parameters *p, fault *f)
     if (!IS_SET(p, method.residual_bound) && p->method.name != METHOD_EVENT) {
         p->method.residual_bound = STUDY_RESIDUAL_BOUND;
     }
+
+    // group by group, then all together
     TRY(parameters_resolve_arm(p, f));
     if (isnan(p->motor.transconductance)) {
         p->motor.transconductance = p->motor.amplifier_gain / p->motor.resistance;

@@ -40,7 +40,7 @@ int settings_look_up(const char *path, const char **name, fault *f)
         return parameter_look_up(path, f);
     }
 
-    // any name that the text can hold
+    // a name without blanks, control characters and equals signs, which the text can hold
     const size_t length = strlen(*name);
     bool good = length > 0 && length <= NAME_MOST;
     for (size_t i = 0; i < length && good; i++) {
@@ -81,6 +81,8 @@ bool settings_next(const char **rest, setting *s)
     const char *word = *rest + strspn(*rest, " ");
     const size_t length = strcspn(word, " "), name_length = strcspn(word, " =");
     assert(length < PARAMETER_TEXT_SIZE);
+
+    // "NAME=VALUE", or a word without an equals sign, which has no value
     *rest = word + length;
     *s = (setting){.word = word, .length = length};
 
@@ -103,7 +105,7 @@ bool settings_get(const parameters *p, const char *name, double *value)
     bool found = false;
     setting s;
 
-    // the last of that name counts
+    // the last one of that name counts
     while (settings_next(&rest, &s)) {
         if (strcmp(s.name, name) == 0) {
             found = setting_number(&s, value);
@@ -121,7 +123,8 @@ status settings_set(parameters *p, const char *name, double value, fault *f)
     }
     number_format_short(number, value);
 
-    // the others stay; what has its name makes room for it, else it comes last
+    // the other settings stay as they are; the new value replaces the first one of its
+    // name and removes further ones, or comes last
     const char *rest = p->control.settings;
     bool written = false, more = true;
     setting s;
@@ -141,6 +144,8 @@ status settings_set(parameters *p, const char *name, double value, fault *f)
                      s.word);
         }
     }
+
+    // the new text, if it is short enough
     if (strlen(text) >= PARAMETER_TEXT_SIZE) {
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, setting_info.path,

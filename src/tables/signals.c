@@ -64,6 +64,8 @@ static struct {
     char name[DERIVED_NAME];
 } derived[DERIVED_SIGNALS];
 
+// For expressions: the index of a recorded signal by its name, -1 if there is none; *near
+// is the nearest name.
 static int find_recorded(void *context, const char *name, const char **near)
 {
     (void)context;
@@ -71,8 +73,9 @@ static int find_recorded(void *context, const char *name, const char **near)
     return signal_find(name);
 }
 
-// The unit of an expression: terms have the same, a factor without a unit keeps it; else
-// "".
+// The unit of an expression, found by evaluating its steps with units in the place of
+// numbers. A sum of terms in one unit has that unit; a product or quotient with a pure
+// number keeps the unit of the other; any other combination has none, "".
 static const char *unit_of(const expression *e)
 {
     const char *stack[EXPRESSION_STEPS]; // NULL: a number
@@ -82,6 +85,7 @@ static const char *unit_of(const expression *e)
         if (s->what == EXPRESSION_NUMBER || s->what == EXPRESSION_NAME) {
             stack[++top] = s->what == EXPRESSION_NAME ? table[s->name].unit : NULL;
         } else if (s->what != EXPRESSION_MINUS) {
+            // an operation on the upper two, of which NULL is a pure number
             const char *a = stack[--top], *b = stack[top + 1];
             const bool same = a != NULL && b != NULL && strcmp(a, b) == 0;
             const bool sum =
@@ -109,6 +113,8 @@ static const char *unit_of(const expression *e)
 int signal_derive(int place, const char *text, fault *f)
 {
     assert(place >= 0 && place < DERIVED_SIGNALS);
+
+    // its name is the text without blanks
     expression e;
     char name[DERIVED_NAME];
     size_t length = 0;
@@ -122,6 +128,7 @@ int signal_derive(int place, const char *text, fault *f)
         return -1;
     }
 
+    // a row of the table like those of recorded signals
     derived[place].expression = e;
     snprintf(derived[place].name, DERIVED_NAME, "%s", name);
     table[SIGNALS_AT_MOST + place] =
@@ -143,6 +150,7 @@ bool signal_is_derived(int index)
 
 // --- values ----------------------------------------------------------------------------
 
+// The value of a recorded signal in a row, which is a sample.
 static double recorded_value(const void *row, int index)
 {
     double value;

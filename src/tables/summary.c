@@ -28,6 +28,7 @@ const char *summary_suggest(const char *key)
     return name_nearest(summary_table, sizeof *summary_table, summary_count, key);
 }
 
+// The offset of a quantity in a summary, whose numbers lie in the order of the table.
 static size_t offset_of(int index)
 {
     assert(index >= 0 && index < summary_count);
