@@ -5,19 +5,19 @@
 
 #include "src/base/plain_math.h"
 
-// A stride shorter than this share of the time constant leaves the closed form too few
-// digits.
+// For a stride shorter than this share of the time constant the closed form would lose
+// too many digits.
 #define SHORT_STEP 1e-3
 
-// Lengths that differ by less than this share of the time constant are the same but for
-// rounding: the square of the share is nothing.
+// For lengths that differ by less than this share of the time constant, exp is continued
+// to first order: the square of the share is below rounding.
 #define SAME_LENGTH 1e-9
 
-// Halves of an interval until a turn is known to the last digit, of which its instant
-// needs half.
+// Bisections until a turning point is known to the last digit. Since the value is flat
+// there, its instant is needed to half the digits only.
 enum { TURN_BISECTIONS = 32 };
 
-// exp(-h/time_constant), h no shorter than SHORT_STEP.
+// exp(-h/time_constant) for a stride h [s], remembered for strides of the same length.
 static double left_after(first_order_lag *y, double h)
 {
     const double longer = h - y->interval;
@@ -29,11 +29,12 @@ static double left_after(first_order_lag *y, double h)
     return y->left - y->left * (longer / y->time_constant);
 }
 
-// f = first + slope u + curve u^2, u = t/length.
+// An input over an interval as f = first + slope u + curve u^2, u = t/length.
 typedef struct parabola {
     double first, slope, curve;
 } parabola;
 
+// The parabola with an input's first and last value and its mean.
 static parabola parabola_of(const lag_input *f)
 {
     const double curve = 3 * (f->first + f->last) - 6 * f->mean;
@@ -44,8 +45,8 @@ void lag_follow(first_order_lag *y, const lag_input *input)
 {
     const double lag = y->time_constant, h = input->length;
     const double first = input->first, last = input->last;
-    const bool nothing = y->value == 0 && first == 0 && last == 0 && input->mean == 0;
-    if (lag == 0 || h <= 0 || nothing) {
+    const bool at_rest = y->value == 0 && first == 0 && last == 0 && input->mean == 0;
+    if (lag == 0 || h <= 0 || at_rest) {
         return;
     }
 
@@ -61,7 +62,7 @@ void lag_follow(first_order_lag *y, const lag_input *input)
         return;
     }
 
-    // the particular solution f - lag f' + lag^2 f'' and a transient that dies
+    // the particular solution f - lag f' + lag^2 f'', and a transient that decays
     double r = lag / h;
     double at_start = first - r * slope + 2 * r * r * curve;
     double at_end = last - r * (slope + 2 * curve) + 2 * r * r * curve;
@@ -77,7 +78,7 @@ void lag_strike(first_order_lag *y, double pulse)
 
 // --- where it turns --------------------------------------------------------------------
 
-// The way of input and lag through an interval, at a share u of it.
+// An interval that input and lag pass through; the functions below take a share u of it.
 typedef struct passage {
     const first_order_lag *start;
     const lag_input *input;
@@ -89,6 +90,8 @@ static double input_at(const passage *p, double u)
     return p->f.first + u * (p->f.slope + u * p->f.curve);
 }
 
+// The lag's output at a share u of the interval: it follows the parabola up to there,
+// whose mean until then is first + slope u/2 + curve u^2/3.
 static double output_at(const passage *p, double u)
 {
     first_order_lag y = *p->start;
@@ -97,21 +100,22 @@ static double output_at(const passage *p, double u)
     return lag_output(&y, input_at(p, u));
 }
 
-// How far the input is ahead of the lag: the lag rises as long as it is. And the rate of
-// that.
+// The input less the output. The output rises while this lead is positive and turns where
+// it is zero.
 static double lead_at(const passage *p, double u)
 {
     return input_at(p, u) - output_at(p, u);
 }
 
+// Derivative of the lead by u: f' less the lag's rate, lead/time_constant.
 static double lead_rate_at(const passage *p, double u)
 {
     const double rate = lead_at(p, u) * p->input->length / p->start->time_constant;
     return p->f.slope + 2 * p->f.curve * u - rate;
 }
 
-// Where a function changes its sign between two shares, having that of `sign` at the
-// first.
+// Where a function changes its sign between two shares, by bisection; at the first of
+// them it has the sign of `sign`.
 static double zero_between(const passage *p, double (*function)(const passage *, double),
                            double from, double to, double sign)
 {
@@ -126,8 +130,9 @@ static double zero_between(const passage *p, double (*function)(const passage *,
     return (from + to) / 2;
 }
 
-// A lag's lead has no more than one extreme, as its rate is a straight line and one
-// exponential less their like: so it is zero twice at most.
+// The lead is a straight line plus an exponential exp(-u length/time_constant), as the
+// parabola's particular solution shows. So it has one extreme at most and is zero twice
+// at most.
 int lag_turns(const first_order_lag *y, const lag_input *input,
               double turns[LAG_MOST_TURNS])
 {
@@ -143,7 +148,8 @@ int lag_turns(const first_order_lag *y, const lag_input *input,
         return top > 0 && top < 1 ? 1 : 0;
     }
 
-    // what begins or ends without a lead has that of its rate there
+    // the signs at both ends; where the lead is zero at an end its rate says which sign
+    // it has next to it
     const double rate = lead_rate_at(&p, 0), last_rate = lead_rate_at(&p, 1);
     const double lead = lead_at(&p, 0), last_lead = lead_at(&p, 1);
     const double first = lead != 0 ? lead : rate;
@@ -153,7 +159,8 @@ int lag_turns(const first_order_lag *y, const lag_input *input,
         return 1;
     }
 
-    // the lead shrinks and grows again: is it the other way round in between?
+    // With one sign at both ends, the lead is zero twice or never: it has to shrink
+    // first, grow at last, and have the other sign at its extreme
     if (!(first * rate < 0 && first * last_rate > 0)) {
         return 0;
     }

@@ -14,17 +14,18 @@
 
 // --- starting --------------------------------------------------------------------------
 
-// Memory, values and the controller's own start, once it is known which controller it is.
+// Allocates a controller's memory and the values of its parameters, and starts it. The
+// rig knows already which controller it is.
 static status start_controller(rig *r, const parameters *p, fault *f)
 {
-    // at least one of each, as nothing allocated would look like no memory
+    // at least one byte and one value each, as calloc of none may return NULL
     size_t count = (size_t)(r->law->parameter_count > 0 ? r->law->parameter_count : 1);
     r->memory = calloc(r->law->memory_size > 0 ? r->law->memory_size : 1, 1);
     r->values = calloc(count, sizeof *r->values);
     FAULT_IF(r->memory == NULL || r->values == NULL, f, STATUS_NO_MEMORY,
              "no memory for the controller '%s'", r->law->name);
 
-    // one that is withheld has no use for settings
+    // a withheld controller is not asked, so its settings are not read
     if (!r->withheld) {
         TRY(controller_values(r->law, p, r->values, f));
     }
@@ -39,7 +40,8 @@ static status start_controller(rig *r, const parameters *p, fault *f)
     }
     const char *refusal = r->law->start != NULL ? r->law->start(r->memory, &setup) : NULL;
     if (refusal != NULL) {
-        // a run that had no memory may go another time, one that is refused does not
+        // for lack of memory the run may succeed another time; otherwise the scenario is
+        // bad
         status code = STATUS_NO_MEMORY;
         if (refusal != reduced_arm_no_memory) {
             code = STATUS_BAD_SCENARIO;
@@ -50,7 +52,7 @@ static status start_controller(rig *r, const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// What a controller answers that fills in nothing.
+// The output of a controller that fills in nothing.
 static controller_output no_answer(void)
 {
     return (controller_output){.command = (double)NAN,
@@ -61,11 +63,14 @@ static controller_output no_answer(void)
 
 // --- what the user has not allowed -----------------------------------------------------
 
-// Stands where a controller from outside would; it is never asked.
+// Takes the place of a controller from outside that the user has not allowed; it is never
+// asked for a command.
 static const controller withheld_law =
     ONE_MODE_CONTROLLER("withheld", "withheld", 0, NULL,
                         .tune = controller_takes_anything);
 
+// The fault of a withheld controller: what the scenario wants to run, and how to allow
+// it.
 static status explain_withheld(const rig *r, fault *f)
 {
     const control_parameters *c = &r->known.control;
@@ -84,8 +89,8 @@ static status explain_withheld(const rig *r, fault *f)
 
 // --- beginning and end -----------------------------------------------------------------
 
-// Finds the controller that control.law names; one from outside only if the user allows
-// it.
+// Finds the controller that control.law names: a built-in law, playback, a plug-in or a
+// process. Code from outside is withheld unless the user allows it.
 static status open_named_law(rig *r, const parameters *p, const rig_options *o, fault *f)
 {
     const control_parameters *c = &p->control;
@@ -117,7 +122,7 @@ static status open_named_law(rig *r, const parameters *p, const rig_options *o, 
     return STATUS_OK;
 }
 
-// The loop before its first sample, at t = 0.
+// Puts the sampled loop to its state before the first sample, at t = 0.
 static void prepare_loop(rig *r, const parameters *p)
 {
     r->known = *p;
@@ -139,7 +144,8 @@ static void prepare_loop(rig *r, const parameters *p)
     r->dac = converter_of(r->sensors.p.dac_bits, r->voltage_limit);
 }
 
-// Finds the controller and starts it; it may refuse the lock, its settings or the arm.
+// Finds the controller, locks its mode and starts it. Fails if the controller refuses its
+// lock, its settings or the arm.
 static status install_law(rig *r, const parameters *p, const rig_options *o, fault *f)
 {
     if (o->law != NULL) {
@@ -204,7 +210,9 @@ double rig_next_time(const rig *r)
     return r->sample_time;
 }
 
-// The commands that are due at an instant go out, and all but `most` of the others.
+// Puts the pending commands into effect that are due at an instant, in their order, and
+// then the oldest others until no more than `most` are pending. Sets *changed if the
+// voltage changes.
 static void apply_commands(rig *r, double time, int most, bool *changed)
 {
     while (r->pending_count > 0 &&
@@ -220,7 +228,7 @@ static void apply_commands(rig *r, double time, int most, bool *changed)
     }
 }
 
-// What a controller gets to see of a reading.
+// A controller's input at a sample [s], of the last reading.
 static controller_input input_of(const rig *r, double time)
 {
     const sensor_reading *read = &r->reading;
@@ -244,8 +252,8 @@ void rig_read(rig *r, double time, const sensed_motion *now)
     }
 }
 
-// What the controller answers to a sample [s]. STATUS_STOPPED, without a sentence, where
-// the run was asked to end while a program was to answer.
+// Asks the controller for its output at a sample [s]. STATUS_STOPPED, without a sentence,
+// if the run was asked to end while a program was to answer.
 static status ask_controller(rig *r, double time, const controller_input *input, fault *f)
 {
     controller_output *out = &r->output;
@@ -280,7 +288,8 @@ static status ask_controller(rig *r, double time, const controller_input *input,
     return STATUS_OK;
 }
 
-// One sample: sensors, controller, D/A; the command is pending for the delay.
+// Takes one sample: set-point, sensors, controller, D/A converter. The command is then
+// pending for the delay.
 static status take_sample(rig *r, double time, const sensed_motion *now, fault *f)
 {
     TRY(rig_follow_setpoint(r, time, f));
@@ -312,8 +321,8 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
     *changed = false;
     const bool samples = !instant_after(r->sample_time, time);
 
-    // commands that are due go out; with jitter a sample may come before the command of
-    // one long before, which then goes out, too
+    // Commands that are due take effect. With jitter a sample may come before a command
+    // that it should come after; that command takes effect with it.
     int most = CONTROL_MOST_DELAY + 1;
     if (samples) {
         most = r->pending_most;

@@ -1,5 +1,5 @@
-// What the controller of a rig is and what it is told: the law, its modes, the nominal
-// model, changes on the way.
+// Which controller a rig has, with its modes, and what it is told: the nominal model at
+// the start and every change during the run.
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -26,7 +26,7 @@ const controller *controller_of(int law)
 
 // --- modes ---
 
-// "approach, impact or force"
+// Writes the names of a law's modes into a text: "approach, impact or force".
 static void list_modes(const controller *law, char *text, size_t size)
 {
     size_t used = 0;
@@ -64,7 +64,7 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
         }
     }
 
-    // none: say which there are
+    // no mode has that name: say which modes there are
     char modes[256];
     list_modes(law, modes, sizeof modes);
     return fault_set_at(
@@ -94,7 +94,7 @@ int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most,
         law = opened.law;
     }
 
-    // copies, as a plug-in's own names go with it
+    // names are copied, since those of a plug-in vanish when it is closed
     int count = 0;
     *lockable = law != NULL && law->lockable;
     const char *const *modes = law != NULL ? law->modes : NULL;
@@ -115,7 +115,7 @@ controller_setup rig_nominal_setup(const rig *r, const parameters *p)
     const double m = p->arm.mass / 2, l = p->arm.length / 2;
     const double link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
 
-    // its stiffness, as it was measured at the wanted force
+    // the stiffness of the joint, if it was measured that at the wanted force
     double k2 = p->arm.k2;
     k2_table measured;
     if (k2_table_read(&measured, p->control.k2_table, NULL) == STATUS_OK &&
@@ -123,7 +123,7 @@ controller_setup rig_nominal_setup(const rig *r, const parameters *p)
         k2 = k2_table_at(&measured, p->control.force);
     }
 
-    // the motor with another kT and other friction
+    // the motor, with the torque constant and friction that the model believes in
     motor_parameters motor = p->motor;
     motor.torque_constant *= b->torque_factor;
     motor.viscous_friction *= b->friction_factor;
@@ -157,7 +157,7 @@ void rig_take_delay(rig *r, const parameters *p)
     r->pending_most = (int)larger(ceil(periods - 1e-9) - 1, 0);
 }
 
-// Whether any parameter of a group differs; the lock is the rig's own affair.
+// Whether any number of a group of parameters differs. Texts are compared elsewhere.
 static bool group_differs(const parameters *a, const parameters *b, const char *group)
 {
     for (int i = 0; i < parameter_count; i++) {
@@ -171,7 +171,7 @@ static bool group_differs(const parameters *a, const parameters *b, const char *
     return false;
 }
 
-// Whether parameters are others than the controller knows.
+// Whether parameters differ from those that the controller knows.
 static bool controller_is_concerned(const rig *r, const parameters *p)
 {
     const parameters *known = &r->known;
@@ -192,8 +192,8 @@ status rig_takes(const rig *r, const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// Gives the controller what it is told from this instant [s] on. STATUS_BAD_SCENARIO,
-// with a sentence in f, if it refuses.
+// Tells the controller parameters that hold from an instant [s] on, by its function tune.
+// STATUS_BAD_SCENARIO, with a sentence in f, if it refuses them.
 static status tell_controller(rig *r, const parameters *p, double time, fault *f)
 {
     // its parameters, and the nominal model
@@ -227,8 +227,8 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
         return STATUS_OK;
     }
 
-    // the arm as it was at the start is what the controller knows, whatever has changed
-    // since
+    // The controller is told of control, belief and voltage limit; it goes on knowing the
+    // arm as it was at the start, whatever has changed since
     known->control = p->control;
     known->belief = p->belief;
     known->motor.voltage_limit = p->motor.voltage_limit;
@@ -260,21 +260,23 @@ status rig_follow_setpoint(rig *r, double time, fault *f)
 {
     const control_parameters *c = &r->known.control;
 
-    // the ramp towards the setpoint, and the wave upon it
-    const double way = c->force - r->ramp, most = c->force_rate * (time - r->ramp_time);
-    if (c->force_rate > 0 && fabs(way) > most) {
-        r->ramp = r->ramp + copysign(most, way);
+    // the ramp towards the set-point, by no more than its rate allows
+    const double left = c->force - r->ramp, most = c->force_rate * (time - r->ramp_time);
+    if (c->force_rate > 0 && fabs(left) > most) {
+        r->ramp = r->ramp + copysign(most, left);
     } else {
         r->ramp = c->force;
     }
     r->ramp_time = time;
+
+    // a sine is added to it, and no force is below 0
     double wave = 0;
     if (c->force_amplitude > 0) {
         wave = c->force_amplitude * inline_sin(2 * M_PI * c->force_frequency * time);
     }
     const double wanted = larger(r->ramp + wave, 0);
 
-    // the controller hears of a change only
+    // the controller is told only when the force has changed
     if (wanted == r->wanted_force) {
         return STATUS_OK;
     }
@@ -293,7 +295,8 @@ bool rig_can_change(const parameters *p, int parameter)
         return false;
     }
 
-    // what no controller knows may change, and the lock is the rig's own affair
+    // a parameter that no controller knows may change; so may the lock, which the rig
+    // handles itself
     const bool known = strncmp(path, "control.", 8) == 0 ||
                        strncmp(path, "belief.", 7) == 0 ||
                        parameter == PARAMETER_INDEX(motor.voltage_limit);
@@ -301,7 +304,7 @@ bool rig_can_change(const parameters *p, int parameter)
         return true;
     }
 
-    // the rest where there is no law, or one that can be tuned
+    // the others may change where there is no law, or one that can be tuned
     if (p->control.law == LAW_NONE || p->control.law == LAW_PROCESS) {
         return true;
     }

@@ -11,19 +11,20 @@
 // 10 % to 90 % of a first-order lag takes ln 9 time constants.
 #define RISE_OVER_TIME_CONSTANT 2.1972245773362196
 
-// A stride no longer than this [s] counts as none: its gain of velocity would be rounding
-// only.
+// In a stride no longer than this [s] the gain of velocity would be rounding only, and
+// the accelerometer is not moved.
 #define SHORTEST_GAIN 1e-9
 
-// Draws numbers of the standard normal distribution by Marsaglia's polar method, some at
-// a time, as their logarithms and roots then need not wait for each other. Apart from the
-// readings that take them, which stay short.
+// Draws numbers of the standard normal distribution by Marsaglia's polar method: for a
+// point (x, y) within the unit circle, r = x^2 + y^2, both x and y times sqrt(-2
+// log(r)/r) are such numbers. Many are drawn at a time, so that logarithms and roots need
+// not wait for each other. Not inlined, which keeps the readings short.
 static __attribute__((noinline)) void draw_ahead(noise_source *n)
 {
     enum { PAIRS = NOISE_AHEAD / 2 };
     double x[PAIRS], y[PAIRS], r[PAIRS];
 
-    // points within the unit circle: one that is not makes room for the next
+    // points within the unit circle; one outside is overwritten by the next
     for (int i = 0; i < PAIRS;) {
         x[i] = 2 * random_uniform(&n->random) - 1;
         y[i] = 2 * random_uniform(&n->random) - 1;
@@ -41,8 +42,8 @@ static __attribute__((noinline)) void draw_ahead(noise_source *n)
     n->taken = 0;
 }
 
-// Each sensor has numbers of its own: its place stands above the bits of the scenario's
-// seed.
+// Starts a sensor's own sequence of numbers: its seed is the sensor's number in the upper
+// bits and the scenario's seed in the lower ones.
 static void noise_start(noise_source *n, uint64_t sensor, int seed)
 {
     random_seed(&n->random, sensor << 32 | (uint32_t)seed);
@@ -70,7 +71,7 @@ converter converter_of(int bits, double range)
 
 // --- in time ---------------------------------------------------------------------------
 
-// Carries out sensor.ideal.
+// Removes all errors of the sensors, as sensor.ideal asks for.
 static void idealise(sensor_parameters *p)
 {
     p->encoder_counts = p->adc_bits = p->dac_bits = 0;
@@ -86,6 +87,7 @@ static void idealise(sensor_parameters *p)
     p->fsr_saturation = HUGE_VAL;
 }
 
+// Gives a lag a time constant [s], and forgets the exponential of the one before.
 static void set_lag(first_order_lag *y, double time_constant)
 {
     y->time_constant = time_constant;
@@ -107,7 +109,7 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
         s->encoder_step = 0;
     }
 
-    // the curve is another one
+    // the remembered points belong to the curve before
     s->felt = (fsr_point){(double)NAN, 0};
     memset(s->read, 0, sizeof s->read);
     s->seen_angle = (double)NAN;
@@ -130,8 +132,8 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed)
     noise_start(&s->acceleration_noise, 3, seed);
 }
 
-// What the FSR shows of a force that turned: a play as wide as the hysteresis times the
-// force.
+// Moves the force that the FSR shows, with hysteresis: it follows the force with a play
+// of the hysteresis times the force to either side. Returns it [N].
 static double fsr_shows(sensors *s, double force)
 {
     const double play = s->p.fsr_hysteresis * fabs(force);
@@ -139,8 +141,8 @@ static double fsr_shows(sensors *s, double force)
     return s->fsr_shown;
 }
 
-// Lets the FSR follow the force over an interval: its play is moved wherever the force
-// turns.
+// Lets the FSR follow the force over an interval. The play has to be moved to every force
+// at which the lag's output turns.
 static void follow_with_fsr(sensors *s, const lag_input *force)
 {
     if (s->p.fsr_hysteresis > 0) {
@@ -175,15 +177,15 @@ void sensors_follow(sensors *s, double h, const sensed_motion *first,
         lag_follow(&s->piezo_leak, &force);
     }
 
-    // the mean of the cubic through both ends' values and rates
+    // the bending's mean is that of the cubic through both ends' values and rates
     if (s->p.film) {
         double mean = (first->bending + last->bending) / 2 +
                       h * (first->bending_rate - last->bending_rate) / 12;
         lag_follow(&s->film_leak, &(lag_input){h, first->bending, last->bending, mean});
     }
 
-    // a jump between strides is a pulse; within the stride the velocity gained is the
-    // mean
+    // A jump of the velocity between strides is a pulse; within a stride the mean
+    // acceleration is the gain of velocity over its length
     if (s->p.accelerometer) {
         feel_jump(s, first->velocity);
         if (h > SHORTEST_GAIN) {
@@ -208,7 +210,7 @@ void sensors_strike(sensors *s, double impulse)
     lag_strike(&s->piezo_rise, impulse);
     lag_strike(&s->piezo_leak, impulse);
 
-    // a blow takes up any play: without a lag the force was without bounds
+    // an impulse takes up the play; without a lag it is an infinite force for an instant
     if (s->p.fsr_hysteresis > 0 && impulse > 0) {
         if (s->fsr.time_constant > 0) {
             s->fsr_shown = fsr_shows(s, s->fsr.value);
@@ -244,26 +246,27 @@ double fsr_force(const sensor_parameters *p, double volts)
     return smaller(force, p->fsr_saturation);
 }
 
-// What a sensor that is calibrated wrongly shows of a value.
-static double off(double value, double gain_error, double offset)
+// What a sensor with errors of calibration shows of a value.
+static double miscalibrated(double value, double gain_error, double offset)
 {
     return (1 + gain_error) * value + offset;
 }
 
-// The volts of a force in the FSR, before noise.
+// The FSR's voltage for a force, before noise [V]; that of the last force is remembered.
 static double felt_volts(sensors *s, double force)
 {
     if (force != s->felt.force) {
-        const double shown = off(force, s->p.fsr_gain_error, s->p.fsr_offset);
+        const double shown = miscalibrated(force, s->p.fsr_gain_error, s->p.fsr_offset);
         s->felt = (fsr_point){force, fsr_volts(&s->p, shown)};
     }
     return s->felt.volts;
 }
 
-// The force that the volts at the A/D are taken for.
+// The force that a voltage at the A/D converter is read as [N]. Converted voltages are
+// few, so the last ones are remembered.
 static double read_force(sensors *s, double volts)
 {
-    // one place for each of some codes in a row
+    // the place where the force of this converter's code would be remembered
     const uint64_t code = (uint64_t)(int64_t)(volts * s->adc.a_unit + 0.5);
     fsr_point *known = &s->read[code % FSR_POINTS_READ];
     if (volts != known->volts) {
@@ -272,7 +275,8 @@ static double read_force(sensors *s, double volts)
     return known->force;
 }
 
-// Encoder and ripple, which stay where the hub stays; the ripple turns with the shaft.
+// Computes the encoder's count and the tachometer's ripple at an angle of the hub, if
+// that has changed. The ripple is a function of the shaft's angle.
 static void see_angle(sensors *s, double angle)
 {
     const double count = s->encoder_step;
@@ -280,7 +284,8 @@ static void see_angle(sensors *s, double angle)
         return;
     }
     s->seen_angle = angle;
-    const double shown = off(angle, s->p.encoder_gain_error, s->p.encoder_offset);
+    const double shown =
+        miscalibrated(angle, s->p.encoder_gain_error, s->p.encoder_offset);
     if (count == 0) {
         s->counted = shown;
     } else {
@@ -290,14 +295,15 @@ static void see_angle(sensors *s, double angle)
         1 + s->p.tachometer_ripple * inline_sin(s->p.tachometer_ripple_count * angle);
 }
 
-// Through the A/D converter, noise added before it.
+// A voltage as the A/D converter gives it, with noise of a standard deviation added
+// before [V].
 static double convert(const sensors *s, noise_source *source, double volts, double noise)
 {
     double disturbed = noise > 0 ? volts + noise * random_normal(source) : volts;
     return converter_value(&s->adc, disturbed);
 }
 
-// Within the range either way, 0 being no limit.
+// A value limited to a sensor's range of either sign; 0 stands for no limit.
 static double on_scale(double value, double range)
 {
     if (range > 0) {
@@ -306,9 +312,10 @@ static double on_scale(double value, double range)
     return value;
 }
 
-// Rise and leak one behind the other, 1/(1 + s r) times s q/(1 + s q), as the difference
-// of two lags side by side, (1/(1 + s r) - 1/(1 + s q)) q/(q - r): each of them follows
-// the force exactly.
+// The reading of the piezo sensor [N]. Its rise (time constant r) and leak (q) lie one
+// behind the other, 1/(1 + s r) times s q/(1 + s q). That equals the difference of two
+// lags side by side, (1/(1 + s r) - 1/(1 + s q)) q/(q - r), each of which follows the
+// force exactly.
 static double read_piezo(sensors *s, double force)
 {
     const sensor_parameters *p = &s->p;
@@ -317,7 +324,7 @@ static double read_piezo(sensors *s, double force)
     if (leak > 0) {
         felt = (felt - s->piezo_leak.value) * leak / (leak - rise);
     }
-    felt = off(felt, p->piezo_gain_error, p->piezo_offset);
+    felt = miscalibrated(felt, p->piezo_gain_error, p->piezo_offset);
     double volts = p->piezo_gain * on_scale(felt, p->piezo_range);
     return convert(s, &s->piezo_noise, volts, p->piezo_noise) / p->piezo_gain;
 }
@@ -343,11 +350,11 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
 {
     const sensor_parameters *p = &s->p;
 
-    // what takes longest first
+    // what the sensors that are always fitted show; the slowest computation first
     const double felt = felt_volts(s, fsr_shows(s, lag_output(&s->fsr, now->force)));
     see_angle(s, now->angle);
-    const double turning =
-        off(now->velocity * s->ripple, p->tachometer_gain_error, p->tachometer_offset);
+    const double turning = miscalibrated(now->velocity * s->ripple,
+                                         p->tachometer_gain_error, p->tachometer_offset);
     double tachometer =
         convert(s, &s->noise, p->tachometer_gain * turning, p->tachometer_noise);
     double fsr = convert(s, &s->noise, felt, p->fsr_noise);
@@ -359,7 +366,7 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
                               .film = (double)NAN,
                               .accelerometer = (double)NAN};
 
-    // the sensors that need not be there draw from noise of their own
+    // sensors that need not be fitted have noise of their own
     if (p->piezo) {
         reading.piezo_force = read_piezo(s, now->force);
     }

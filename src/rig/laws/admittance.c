@@ -13,7 +13,7 @@
 #include "src/rig/laws/laws.h"
 #include "src/base/plain_math.h"
 
-#define READ_LATER 3 // periods that a force takes into its reading
+#define READING_LAG 3 // periods by which a reading lags behind the force
 
 enum { APPROACH, CONTACT };
 static const char *const mode_names[] = {"approach", "contact", NULL};
@@ -64,15 +64,16 @@ static void admittance_sample(void *memory, const controller_input *in,
         m->mode = APPROACH;
     }
 
-    // the speed at which the damper takes up the force's error; the reading of a
-    // set-point that moves comes a little later
+    // the speed at which the damper balances the force error; a moving set-point is
+    // compared where it was when the force was read
     set_point_follow(&m->wanted, r->period);
-    const double later = (READ_LATER * r->period + r->delay) * m->wanted.rate;
-    const double wanted = (m->wanted.force - later - in->force) / m->p[DAMPING];
+    const double rise = (READING_LAG * r->period + r->delay) * m->wanted.rate;
+    const double wanted = (m->wanted.force - rise - in->force) / m->p[DAMPING];
 
-    // the mass comes to it, exactly over a period: v' = (wanted - v)/mass_time
-    const double kept = m->p[MASS_TIME] > 0 ? plain_exp(-r->period / m->p[MASS_TIME]) : 0;
-    m->speed = wanted + kept * (m->speed - wanted);
+    // the mass approaches that speed, v' = (wanted - v)/mass_time, solved over a period
+    const double decay =
+        m->p[MASS_TIME] > 0 ? plain_exp(-r->period / m->p[MASS_TIME]) : 0;
+    m->speed = wanted + decay * (m->speed - wanted);
 
     // in contact a set-point that moves takes the hub with it
     double speed = m->speed, following = 0;
@@ -82,7 +83,8 @@ static void admittance_sample(void *memory, const controller_input *in,
     }
     m->angle += speed * r->period;
 
-    // position control of the hub, and what its motion and the pressed beam take
+    // position control of the hub, and the torques that damping, friction and the pressed
+    // beam take
     double torque =
         m->p[KP] * (m->angle - in->encoder) + m->p[KV] * (speed - in->tachometer);
     torque += following;

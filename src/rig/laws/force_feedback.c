@@ -61,6 +61,7 @@ static const char *force_feedback_tune(void *memory, const controller_setup *set
     return NULL;
 }
 
+// As the tuning; the command of force-integral begins with that of the approach.
 static const char *force_feedback_start(void *memory, const controller_setup *setup)
 {
     force_memory *m = memory;
@@ -69,8 +70,8 @@ static const char *force_feedback_start(void *memory, const controller_setup *se
     return refusal;
 }
 
-// Contact once the reading was above the threshold, and from then on, unless the law is
-// held in a mode.
+// Chooses the mode: CONTACT from the first reading above the threshold on, or the mode
+// that the user holds the law in.
 static void force_feedback_choose_mode(force_memory *m, const controller_input *in)
 {
     bool contact = m->mode == CONTACT || in->force > m->p[THRESHOLD];
@@ -134,9 +135,13 @@ static void discontinuous_sample(void *memory, const controller_input *in,
                                  controller_output *out)
 {
     force_memory *m = memory;
-    bool contact =
-        in->wanted_mode >= 0 ? in->wanted_mode == CONTACT : in->force > m->p[THRESHOLD];
     set_point_follow(&m->wanted, m->rig.period);
+
+    // contact by this reading alone, unless the user holds the law in a mode
+    bool contact = in->force > m->p[THRESHOLD];
+    if (in->wanted_mode >= 0) {
+        contact = in->wanted_mode == CONTACT;
+    }
     if (contact) {
         out->mode = CONTACT;
     } else {

@@ -69,8 +69,8 @@ typedef struct hybrid_memory {
     double a[6];        // quintic of the impact mode, (5.15)
     double begun;       // when the quintic begins [s]
     double length;      // and how long it is [s]
-    bool replans;       // t_f has changed since
-    double planned;     // force at its end [N]
+    bool replans;       // t_f has changed since the quintic was planned
+    double planned;     // force at the quintic's end [N]
     double start_angle; // at the first sample [rad]
     bool started;       // the first sample is over
     bool reversed;      // bang-bang has braked until the hub rested
@@ -86,9 +86,8 @@ typedef struct hybrid_memory {
 static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
 
 // Takes setup and parameters into a hybrid_memory, at the start or later; never refuses.
-// In the impact mode the trajectory is planned anew from where the arm is where t_f
-// changes, for what is left of it; a set-point that moves is added to it. The second is
-// for laws with a parameter of their own behind the shared ones.
+// If t_f changes in the impact mode, the trajectory is planned again, from where the arm
+// is and for the time left.
 static const char *hybrid_start(void *memory, const controller_setup *setup)
 {
     hybrid_memory *m = memory;
@@ -105,6 +104,7 @@ static const char *hybrid_start(void *memory, const controller_setup *setup)
     return NULL;
 }
 
+// hybrid_start for a law with a parameter of its own behind the shared ones.
 static const char *hybrid_start_with_own(void *memory, const controller_setup *setup)
 {
     hybrid_memory *m = memory;
@@ -161,7 +161,8 @@ static double hybrid_calculated_force(const hybrid_memory *m, const controller_i
     const double acceleration =
         contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
 
-    // corrected: link 3 turns back about a joint that moves on, m l^2/2 - m l^2/4 - I3
+    // corrected: link 3 turns back while its joint moves on, which gives m l^2/2 - (m
+    // l^2/4 + I3)
     double coupling;
     if (m->printed) {
         coupling = r->link_mass * eps2;
@@ -185,21 +186,23 @@ static double feedback(const hybrid_memory *m, double angle_error, double veloci
     return sum / m->rig.torque_per_volt;
 }
 
-// The coefficients of the quintic (5.15) that lead it to rest at the final angle from
-// what the first three say of its start: the solution of (5.18)-(5.20).
+// Computes the last three coefficients of the quintic (5.15), with which it ends at rest
+// at the final angle, by (5.18)-(5.20). The first three, which are set, give its angle,
+// velocity and acceleration at the beginning.
 static void set_quintic_end(hybrid_memory *m)
 {
-    const double T = m->length, way = pressing_angle(m, m->planned) - m->a[0];
+    const double T = m->length, distance = pressing_angle(m, m->planned) - m->a[0];
     const double velocity = m->a[1], acceleration = 2 * m->a[2];
-    m->a[3] = (20 * way - 12 * velocity * T - 3 * acceleration * T * T) / (2 * T * T * T);
-    m->a[4] =
-        (-30 * way + 16 * velocity * T + 3 * acceleration * T * T) / (2 * T * T * T * T);
-    m->a[5] =
-        (12 * way - 6 * velocity * T - acceleration * T * T) / (2 * T * T * T * T * T);
+    m->a[3] =
+        (20 * distance - 12 * velocity * T - 3 * acceleration * T * T) / (2 * T * T * T);
+    m->a[4] = (-30 * distance + 16 * velocity * T + 3 * acceleration * T * T) /
+              (2 * T * T * T * T);
+    m->a[5] = (12 * distance - 6 * velocity * T - acceleration * T * T) /
+              (2 * T * T * T * T * T);
 }
 
-// Plans from the present state and command on, so that the command goes on from where it
-// is.
+// Plans a quintic of a length [s] that begins with the present state and, so that the
+// command has no jump, with the acceleration under the present command.
 static void plan_quintic(hybrid_memory *m, const controller_input *in, double length)
 {
     m->begun = in->time;
@@ -211,24 +214,25 @@ static void plan_quintic(hybrid_memory *m, const controller_input *in, double le
     set_quintic_end(m);
 }
 
-// The impact angle that a sample's readings show, NaN where the sensor is not fitted
-// [rad].
+// The impact angle that a sample's readings show [rad], NaN where the sensor is not
+// fitted: by (5.8) from the film, or by (5.13) from the accelerometer.
 static double impact_angle_shown(const hybrid_memory *m, const controller_input *in)
 {
     if ((int)m->p[IMPACT_ANGLE] == ANGLE_BY_FILM) {
         return in->encoder + in->film / 2;
     }
 
-    // what of the measured acceleration the motor and friction do not account for is the
-    // beam's
+    // the measured acceleration differs from that of the model by the spring torque of
+    // the impact angle's error
     double missing = in->accelerometer -
                      contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
     return m->impact_angle + contact_inertia(m) * missing / contact_stiffness(m);
 }
 
-// Averages what the first readings of the impact mode show; the trajectory's end goes
-// with it. The accelerometer is off scale at the impact and lags behind it for a while,
-// the film loses its charge.
+// Averages the impact angles that the first readings of the impact mode show, and moves
+// the trajectory's end to the average. The first readings of the accelerometer are left
+// out, since it is off scale at the impact and lags behind for a while. Later readings
+// are left out because the film loses its charge.
 static void average_impact_angle(hybrid_memory *m, const controller_input *in)
 {
     const double lag = 0.01, window = 0.1; // [s]
@@ -247,6 +251,7 @@ static void average_impact_angle(hybrid_memory *m, const controller_input *in)
     }
 }
 
+// Goes over to a mode; the impact mode begins with a plan of its trajectory.
 static void hybrid_begin(hybrid_memory *m, int mode, const controller_input *in)
 {
     m->mode = mode;
@@ -257,7 +262,8 @@ static void hybrid_begin(hybrid_memory *m, int mode, const controller_input *in)
     }
 }
 
-// Plans anew for what is left of the transition, if that is more than a sample.
+// Plans the trajectory again, for the time that is left of the transition, unless that is
+// within a period.
 static void replan(hybrid_memory *m, const controller_input *in)
 {
     const double left = m->since + m->p[TRANSITION] - in->time;
@@ -267,8 +273,8 @@ static void replan(hybrid_memory *m, const controller_input *in)
     }
 }
 
-// Goes into the mode the law is held in. False if it is not: then it chooses itself,
-// beginning with the mode that it is in.
+// Goes over to the mode in which the user holds the law. False if it is not held in one
+// and chooses its modes itself.
 static bool hybrid_held(hybrid_memory *m, const controller_input *in)
 {
     if (in->wanted_mode >= 0 && in->wanted_mode != m->mode) {
@@ -277,7 +283,8 @@ static bool hybrid_held(hybrid_memory *m, const controller_input *in)
     return in->wanted_mode >= 0;
 }
 
-// The command that gives a torque and feeds the errors of angle and velocity back [V].
+// The command for a torque, with feedback of the errors of angle and velocity [V];
+// reports the wanted angle and velocity.
 static double tracking_command(const hybrid_memory *m, const controller_input *in,
                                controller_output *out, double angle, double velocity,
                                double torque)
@@ -288,7 +295,7 @@ static double tracking_command(const hybrid_memory *m, const controller_input *i
            feedback(m, angle - in->encoder, velocity - in->tachometer);
 }
 
-// Impact mode: the quintic and the law (5.24).
+// The command of the impact mode: along the quintic, by the law (5.24) [V].
 static double impact_command(const hybrid_memory *m, const controller_input *in,
                              controller_output *out)
 {
@@ -299,7 +306,7 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
         a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
     double acceleration = 2 * a[2] + t * (6 * a[3] + t * (12 * a[4] + t * 20 * a[5]));
 
-    // with the set-point's way since it was planned
+    // a set-point that has moved since the plan moves the trajectory with it
     angle += pressing_angle(m, m->wanted.force) - pressing_angle(m, m->planned);
     velocity += set_point_turn(&m->wanted, &m->rig);
     acceleration += m->rig.link_length / (2 * m->rig.k2) * m->wanted.acceleration;
@@ -310,9 +317,9 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
     return tracking_command(m, in, out, angle, velocity, torque);
 }
 
-// Force mode: PD round the final angle with the static torque in advance, (5.25); while
-// the set-point moves, along the angles that go with it, with the model's torque for that
-// [V].
+// The command of the force mode: PD feedback about the final angle with the static torque
+// in advance, (5.25) [V]. While the set-point moves, the angle moves with it and the
+// model's torque for that motion is added.
 static double hybrid_force_command(const hybrid_memory *m, const controller_input *in,
                                    controller_output *out)
 {
@@ -323,7 +330,8 @@ static double hybrid_force_command(const hybrid_memory *m, const controller_inpu
                             set_point_turn(&m->wanted, &m->rig), torque);
 }
 
-// What begins a sample: approach ends with contact, the impact mode after a time [s].
+// Begins a sample: follows the set-point and chooses the mode. Approach and recovery end
+// with contact, the impact mode after a time [s].
 static void choose_mode(hybrid_memory *m, const controller_input *in, double impact_time)
 {
     set_point_follow(&m->wanted, m->rig.period);
@@ -339,8 +347,8 @@ static void choose_mode(hybrid_memory *m, const controller_input *in, double imp
     }
 }
 
-// The three modes with their switching, contact and then t_f, behind an approach with the
-// given command [V]. Fills out but for the command, which it returns.
+// Chooses among the three modes and returns the command of the present one [V];
+// `approach` is that of the approach. Fills in all of `out` but the command.
 static double hybrid_command(hybrid_memory *m, const controller_input *in,
                              controller_output *out, double approach)
 {
@@ -409,18 +417,20 @@ static void recovering_sample(void *memory, const controller_input *in,
     if (in->force > m->p[THRESHOLD]) {
         m->readings_without_contact = 0;
     } else {
-        m->readings_without_contact = m->readings_without_contact + 1;
+        m->readings_without_contact++;
     }
+
+    // a lost contact ends the impact mode and the force mode
     bool pressing = m->mode == IMPACT || m->mode == FORCE;
     if (!hybrid_held(m, in) && pressing && m->readings_without_contact >= lost) {
         hybrid_begin(m, RECOVER, in);
     }
 
-    // back to the wall by a slow move towards the angle at which the beam would press
+    // the hub returns slowly towards the angle at which the beam would press
     double approach = m->p[APPROACH_VOLTAGE];
     if (m->mode == RECOVER) {
-        const double way = pressing_angle(m, m->p[FORCE_WANTED]) - in->encoder;
-        approach = hybrid_speed_command(m, in, fmin(0.3, 5 * way));
+        const double left = pressing_angle(m, m->p[FORCE_WANTED]) - in->encoder;
+        approach = hybrid_speed_command(m, in, fmin(0.3, 5 * left));
     }
     out->command = hybrid_command(m, in, out, approach);
 }
@@ -431,8 +441,8 @@ const controller recovering_law =
 
 // --- reverse-torque ---
 
-// Until contact as the hybrid controller; then the largest command back for
-// control.reverse_time; then its force mode.
+// The hybrid controller until contact; then the largest command away from the wall for
+// control.reverse_time; then the hybrid controller's force mode.
 static const controller_parameter reverse_torque_parameters[] = {HYBRID_PARAMETERS,
                                                                  {.name =
                                                                       "reverse_time"}};
@@ -471,9 +481,9 @@ const controller reverse_torque_law =
 // has the command in it, by the torque at the hub over the arm's length: less than half a
 // newton a volt.
 #define VOLTS_PER_NEWTON 1
-// Share of the limit that the predicted force is held to: it takes the command in effect
-// to stay, while the impact mode goes on along its plan and comes to press up to a fifth
-// harder.
+// Share of the limit to which the predicted force is held. The prediction assumes that
+// the command in effect stays, but the impact mode follows its plan and presses up to a
+// fifth harder.
 #define SHARE 0.8
 // Speed at which a resting hub is taken, for the sign of its friction [rad/s].
 #define CREEP 1e-3
@@ -489,7 +499,8 @@ static const char *speed_limit_start(void *memory, const controller_setup *setup
     return hybrid_start_with_own(memory, setup);
 }
 
-// Keeps the present speed up and adds what the predicted force leaves.
+// The command that keeps up the present speed, plus one in proportion to the margin that
+// the predicted force leaves [V].
 static double force_limited_command(const hybrid_memory *m, const controller_input *in)
 {
     const double left = SHARE * m->p[OWN_FORCE_LIMIT] - in->predicted_force;
@@ -531,10 +542,11 @@ static void bang_bang_sample(void *memory, const controller_input *in,
         m->start_angle = in->encoder;
     }
 
-    // on the last part the command brakes until the arm stands, then it is the plain
+    // behind the switch the command brakes until the hub rests, then it is the plain
     // approach
-    double gone = in->encoder - m->start_angle, way = m->rig.wall_angle - m->start_angle;
-    if (gone >= m->p[OWN] * way) {
+    double travelled = in->encoder - m->start_angle;
+    double distance = m->rig.wall_angle - m->start_angle;
+    if (travelled >= m->p[OWN] * distance) {
         m->reversed = m->reversed || in->tachometer <= 0;
         approach = -limit;
     }

@@ -63,11 +63,12 @@ enum { WAIT, TRAVEL, RISE, HOLD }; // pieces of the plan; piece k ends at joint 
 enum { DEPARTURE, TOUCH, FULL_FORCE, JOINTS };
 
 #define PI 3.14159265358979323846
-// by which the hub starts before the tip, in times 1/s: 0.03 % are lost
+// lead of the hub over the tip, in times 1/s: what the plan has before that, 0.03 %, is
+// lost
 #define LEAD_IN 8.0
-// before its time a touch has to be, in times 1/s, to move the plan on
+// lead over the planned time, in times 1/s, from which on a touch moves the plan on
 #define EARLY 1.5
-// planned hub velocities below it need no push against friction [rad/s]
+// planned hub velocities below this are not compensated for friction [rad/s]
 #define REST_RATE 1e-3
 
 typedef struct inverse_memory {
@@ -206,6 +207,7 @@ static moment plan_at(const inverse_memory *m, double time)
     return now;
 }
 
+// Velocity of the hub at a moment of the plan, y' - d'/2 [rad/s].
 static double hub_rate(const moment *planned)
 {
     return planned->tip_rate - planned->bend_rate / 2;
@@ -271,23 +273,23 @@ static const char *inverse_dynamics_start(void *memory, const controller_setup *
     return NULL;
 }
 
-// The plan from the hub's angle at the first sample, at rest: y and y' end at the wall
-// and at v.
+// Makes the plan, from rest at the hub's angle at the first sample. With w T = 2 pi the
+// travel ends with y' = B T = v and y = y0 + A T/w + B T^2/2, the wall's angle.
 static void plan_from(inverse_memory *m, const controller_input *in)
 {
-    const double T = m->joint[TOUCH], way = m->rig.wall_angle - in->encoder;
+    const double T = m->joint[TOUCH], distance = m->rig.wall_angle - in->encoder;
     m->started = true;
     m->start_angle = in->encoder;
     m->departure = in->time + LEAD_IN / m->zero;
     m->cosine = m->arrival_rate / T;
-    m->sine = (way - m->arrival_rate * T / 2) * m->travel / T;
+    m->sine = (distance - m->arrival_rate * T / 2) * m->travel / T;
     join_pieces(m);
 }
 
-// Playback. A touch well before the planned time advances the plan to the touch; nothing
-// else is fed back. (Just before that time the hub already turns into the press, and the
-// plan is better left unchanged.) Since a command holds for a period, it is the torque at
-// the period's middle.
+// Plays the plan back. A touch well before the planned time advances the plan to the
+// touch; nothing else is fed back. (Just before that time the hub already turns into the
+// press, and the plan is better left unchanged.) Since a command holds for a period, it
+// is that of the planned torque in the period's middle.
 static void inverse_dynamics_sample(void *memory, const controller_input *in,
                                     controller_output *out)
 {

@@ -44,16 +44,18 @@ static inline double coulomb_friction(const controller_setup *setup, double rate
     return 0;
 }
 
-// A wanted force that changes, as it is told, and a smooth one that follows it: in a step
-// without overshoot, on a ramp without a lag, once its rate is known. The force answers
-// to the hub with 1 - (p/s)^2, s of the arm, for the tip's inertia; so what follows falls
-// off as p^-2, or fast waves would grow.
+// A wanted force that changes during the run (the aim), and a smooth force that follows
+// it: a step without overshoot, and a ramp without a lag once its rate is known. Because
+// of the tip's inertia the contact force answers to the hub's angle with 1 - (p/s)^2, s
+// of the arm; so the response of the smooth force has to fall off as p^-2, or fast waves
+// of the aim would grow.
 typedef struct set_point {
     double aim;                       // [N]
-    double rise;                      // since the sample before [N]
-    double seen_rate, aim_rate;       // by two samples, of a step none; smoothed [N/s]
-    bool changed;                     // since the last sample
-    double force, rate, acceleration; // of what follows [N], [N/s], [N/s2]
+    double rise;                      // of the aim since the sample before [N]
+    double seen_rate;                 // of the aim by two samples, 0 for a step [N/s]
+    double aim_rate;                  // the same smoothed [N/s]
+    bool changed;                     // the aim has changed since the last sample
+    double force, rate, acceleration; // the smooth force [N], [N/s], [N/s2]
 } set_point;
 
 #define SET_POINT_RATE 40.0 // of following, w [1/s]
@@ -73,7 +75,8 @@ static inline void set_point_tell(set_point *s, double force, double period,
     s->aim = force;
     s->changed = true;
 
-    // two changes the same way are a rate, by the smaller of them; one alone is a step
+    // two changes in a row of one sign are a ramp, whose rate the smaller of them gives;
+    // a single change is a step
     s->seen_rate = 0;
     if (rise_before * s->rise > 0) {
         const double change = fmin(fabs(rise_before), fabs(s->rise));
@@ -81,14 +84,14 @@ static inline void set_point_tell(set_point *s, double force, double period,
     }
 }
 
-// At a sample: over the period before it the error e = force - aim died away as
+// Moves the smooth force on by a period, in which its error e = force - aim decays as
 //
 //     e'' + 2 w e' + w^2 e = 0,    e(t) = (e0 + (e0' + w e0) t) exp(-w t)
 static inline void set_point_follow(set_point *s, double period)
 {
     const double w = SET_POINT_RATE, decay = plain_exp(-w * period);
 
-    // the rate of the aim, smoothed; one that has not changed has none
+    // the rate of the aim, smoothed; an aim that has not changed has the rate 0
     if (!s->changed) {
         s->rise = s->seen_rate = 0;
     }
@@ -102,7 +105,7 @@ static inline void set_point_follow(set_point *s, double period)
         return;
     }
 
-    // and what is left of them
+    // the error and its rate now, and the force that follows from them
     const double slope = rate_before + w * error_before;
     const double error = (error_before + slope * period) * decay;
     const double rate = (rate_before - w * slope * period) * decay;
@@ -118,8 +121,8 @@ static inline double pressed_inertia(const controller_setup *r)
            r->link_mass * r->link_length * r->link_length / 2;
 }
 
-// How the hub turns with a set-point that moves [rad/s], and the torque that takes:
-// damping, friction, which ends where the hub as good as rests, and inertia [N m].
+// Rate of the hub for a set-point that moves [rad/s], and the torque that this takes [N
+// m]: damping, friction, which goes over to 0 where the hub almost rests, and inertia.
 static inline double set_point_turn(const set_point *s, const controller_setup *r)
 {
     return r->link_length / (2 * r->k2) * s->rate;

@@ -5,10 +5,10 @@
 //     M x'' = Kt u - D x' - friction - 4 k2 x,      f = 4 k2 x - mu x'',
 //     M = I1 + 2 I + m l^2/2,     mu = (m l^2/4 - I)/l  (l = 1/2 of the beam)
 //
-// so braking presses, and with f as the input x'' = s^2 (x - f/(4 k2)), s^2 = 4 k2/mu, is
-// unstable. The feedback that makes the sum of (f - command)^2 + effort u^2 least comes
-// from the discrete Riccati equation. What it asks for is limited to commands that keep
-// the force positive.
+// so braking presses. With f as the input x'' = s^2 (x - f/(4 k2)), s^2 = 4 k2/mu, which
+// is unstable. The feedback that makes the sum of (f - command)^2 + effort u^2 least
+// comes from the discrete Riccati equation. What it asks for is limited to commands that
+// keep the force positive.
 //
 // The observer is a Kalman filter: in free flight on both links, so that the wall is
 // found where the tip is when the force sensor first feels it; in contact on theta2, its
@@ -38,13 +38,13 @@ typedef struct optimal_memory {
     controller_setup rig;
     double force, approach_voltage, threshold;
     double force_limit; // HUGE_VAL if there is none [N]
-    double jump[2];     // rate of x after an impact, of both links' velocities before it
+    double jump[2];     // x' after an impact, per velocity of each link before it
     int mode;
     bool started;
     bool flies;          // the estimate is of the free flight
     double inertia;      // M [kg m2]
     double stiffness;    // 4 k2 [N m/rad]
-    double spring_force; // of x: 2 k2/l [N/rad]
+    double spring_force; // force at rest per x: 2 k2/l [N/rad]
     double mass_force;   // mu [N s2/rad]
     double divergence;   // s [1/s]
     double gain[2];      // of x and its rate [V/rad], [V s/rad]
@@ -78,8 +78,9 @@ static const double contact_noise[4] = {1e-8, 2e-4, 1e-8, 1e-5};
 #define SHORTFALL      0.0065 // of the aim, a share per newton, as the noise grows [1/N]
 #define MOST_SHORTFALL 0.05   // a share
 
-// Free flight of both links under a torque on the hub: M q'' = torque e1 - D q1' e1 - K
-// q.
+// Models the free flight of both links under a torque on the hub:
+//
+//     M q'' = torque e1 - D q1' e1 - K q
 static void model_flight(optimal_memory *m)
 {
     const controller_setup *r = &m->rig;
@@ -87,7 +88,7 @@ static void model_flight(optimal_memory *m)
     double m11 = r->hub_inertia + r->link_inertia + 1.25 * ml2, m12 = 0.5 * ml2;
     double m22 = r->link_inertia + 0.25 * ml2, det = m11 * m22 - m12 * m12;
 
-    // what the impact makes of both links' velocities, (4.10)-(4.17)
+    // x' after an impact by both links' velocities before it, (4.10)-(4.17)
     m->jump[0] = (m11 - m12) / m->inertia;
     m->jump[1] = (m12 - m22) / m->inertia;
 
@@ -103,8 +104,8 @@ static void model_flight(optimal_memory *m)
     sampled_model_init(&m->flight, 4, rate, input, r->period);
 }
 
-// In contact, on x and its rate, the wall's angle and a constant torque T:
-// M x'' = torque + T - D x' - 4 k2 x, over a time h.
+// Samples the motion in contact over a time h [s]: M x'' = torque + T - D x' - 4 k2 x.
+// The states are the hub's angle and rate, the wall's angle and the constant torque T.
 static void model_contact(optimal_memory *m, double h, sampled_model *model)
 {
     const double k = m->stiffness / m->inertia, d = m->rig.hub_damping / m->inertia;
@@ -119,8 +120,7 @@ static void model_contact(optimal_memory *m, double h, sampled_model *model)
 }
 
 // Takes setup and parameters, at the start or later, models the arm and finds the gains.
-// What it estimates and the mode stay. The second is for a law with a limit on the force
-// behind the shared parameters.
+// The estimate and the mode stay. Returns why that cannot be, or NULL.
 static const char *state_feedback_start(void *memory, const controller_setup *setup)
 {
     optimal_memory *m = memory;
@@ -151,14 +151,14 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     model_contact(m, setup->period, &m->contact);
     model_contact(m, setup->delay, &m->during_delay);
 
-    // deviations of x and its rate from rest under a command
+    // the plant: deviations of x and x' from rest, and the command that deviates
     sampled_model plant = {.n = 2};
     for (int i = 0; i < 2; i++) {
         memcpy(plant.a[i], m->contact.a[i], 2 * sizeof(double));
         plant.b[i] = m->contact.b[i] * setup->torque_per_volt;
     }
 
-    // their force, f = 4 k2 x - mu x'', and the command's effect on it at once
+    // its output is the force, f = 4 k2 x - mu x'', on which the command acts at once
     const double per_torque = m->mass_force / m->inertia;
     const double output[2] = {m->spring_force + per_torque * m->stiffness,
                               per_torque * setup->hub_damping};
@@ -172,6 +172,7 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     return NULL;
 }
 
+// state_feedback_start for a law with a limit on the force behind the shared parameters.
 static const char *state_feedback_start_with_limit(void *memory,
                                                    const controller_setup *setup)
 {
@@ -185,8 +186,8 @@ static const char *state_feedback_start_with_limit(void *memory,
     return refusal;
 }
 
-// Coulomb friction at a velocity, taken as what holds where the hub is as good as at
-// rest.
+// Coulomb friction at a velocity of the hub [N m]; where the hub almost rests it is,
+// within its limit, what balances the other torque.
 static double friction(const optimal_memory *m, double velocity, double other_torque)
 {
     const double rest = 0.01; // [rad/s]
@@ -197,7 +198,7 @@ static double friction(const optimal_memory *m, double velocity, double other_to
     return fmax(-limit, fmin(other_torque, limit));
 }
 
-// Takes in what the sensors of the hub read: the first state, and that of its rate.
+// Takes in the readings of encoder, of state 0, and tachometer, of the state `rate`.
 static void read_hub(estimator *e, int rate, const controller_input *in)
 {
     const double angle_row[4] = {1};
@@ -219,6 +220,7 @@ static void begin_estimate(optimal_memory *m, const double *state, const double 
 
 // --- free flight -----------------------------------------------------------------------
 
+// Moves the estimate of the flight on to this sample.
 static void predict_flight(optimal_memory *m, const controller_input *in)
 {
     double drive = m->rig.torque_per_volt * in->voltage;
@@ -226,29 +228,31 @@ static void predict_flight(optimal_memory *m, const controller_input *in)
     estimator_predict(&m->e, &m->flight, drive, flight_noise);
 }
 
-// The tip met the wall between the last sample and this one: there the wall is.
+// Begins the estimate in contact. The tip met the wall between the last sample and this
+// one, and so the wall lies between the tip angles of both: a uniform distribution, whose
+// variance is the square of their distance over 12.
 static void enter_contact(optimal_memory *m, const controller_input *in)
 {
-    double before = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2;
+    double tip_before = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2;
     predict_flight(m, in);
-    double after = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2, way = after - before;
+    double tip_after = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2;
+    double wall = (tip_before + tip_after) / 2, distance = tip_after - tip_before;
+    double wall_variance = distance * distance / 12 + 1e-6;
 
-    // anywhere on the way between the two samples: variance way^2/12
-    begin_estimate(m, (double[]){in->encoder, in->tachometer, (before + after) / 2, 0},
-                   (double[]){ANGLE_VARIANCE, RATE_VARIANCE, way * way / 12 + 1e-6,
-                              1e-4});
+    begin_estimate(m, (double[]){in->encoder, in->tachometer, wall, 0},
+                   (double[]){ANGLE_VARIANCE, RATE_VARIANCE, wall_variance, 1e-4});
     m->ceiling = m->force;
     m->flies = false;
 }
 
-// Force to brake with where stopping takes at least `stopping` [N].
+// Force to brake with, somewhat above `stopping`, the least force that stops the hub [N].
 static double braking_force(const optimal_memory *m, double stopping)
 {
     return stopping + 0.2 * fmax(0, stopping - m->force) + 0.01;
 }
 
-// Back to free flight where that is wanted: the tip is taken to be at the wall still,
-// where both links turn against each other.
+// Begins the estimate in free flight again. The tip is taken to be still at the wall,
+// with both links turning against each other.
 static void leave_contact(optimal_memory *m, const controller_input *in)
 {
     const double angle = in->encoder, rate = in->tachometer;
@@ -257,33 +261,34 @@ static void leave_contact(optimal_memory *m, const controller_input *in)
     m->flies = true;
 }
 
-// If the tip touched the wall now: the impact throws the links' velocities onto x' as
-// (4.10)-(4.17) have it, and stopping from there takes at least 4 k2 (x + x'/s), which
-// grows until the controller has noticed. The phase of the vibration is in x and in both
-// velocities.
+// The force to brake with if the tip touched the wall now [N]. The impact turns the
+// links' velocities into x' by (4.10)-(4.17); stopping takes at least 4 k2 (x + x'/s),
+// which grows as exp(s t) until the first command after the touch takes effect. The phase
+// of the vibration enters by x and both velocities.
 static double force_of_touch(const optimal_memory *m)
 {
     const double *z = m->e.z;
     double x = (z[FREE_FIRST] - z[FREE_LAST]) / 2;
     double rate = m->jump[0] * z[FREE_FIRST_RATE] + m->jump[1] * z[FREE_LAST_RATE];
-    double noticed = plain_exp(m->divergence * (m->rig.period + m->rig.delay));
-    return braking_force(m, m->spring_force * (x + rate / m->divergence) * noticed);
+    double growth = plain_exp(m->divergence * (m->rig.period + m->rig.delay));
+    return braking_force(m, m->spring_force * (x + rate / m->divergence) * growth);
 }
 
-// The command of the approach; with a limit on the force, as fast as it allows: the speed
-// that there is, kept up, and the rest in proportion to the remaining margin of force.
+// The command of the approach [V]. With a limit on the force it is as fast as the limit
+// allows: a command that keeps up the present speed, plus one in proportion to the margin
+// between the limit and the force of a touch now.
 static double approach(const optimal_memory *m)
 {
     if (m->force_limit == HUGE_VAL) {
         return m->approach_voltage;
     }
     const double gain = 3; // [V/N]
-    const double margin =
-        0.94; // share of the limit that is used, less 0.035 N for the noise
+
+    // the limit, with a margin for errors of the model and for noise
+    const double limit = 0.94 * m->force_limit - 0.035; // [N]
     double speed = m->e.z[FREE_FIRST_RATE];
     double keep = m->rig.hub_damping * speed + m->rig.stiction;
-    double command = keep / m->rig.torque_per_volt +
-                     gain * (margin * m->force_limit - 0.035 - force_of_touch(m));
+    double command = keep / m->rig.torque_per_volt + gain * (limit - force_of_touch(m));
     return fmin(command, m->approach_voltage);
 }
 
@@ -298,13 +303,15 @@ static double acceleration(const optimal_memory *m, const double *z, double driv
     return (torque - friction(m, z[PRESSED_RATE], torque)) / m->inertia;
 }
 
+// Contact force of a state under a torque on the hub, 2 k2/l x - mu x'' [N].
 static double contact_force(const optimal_memory *m, const double *z, double drive)
 {
     return m->spring_force * (z[PRESSED_ANGLE] - z[PRESSED_WALL]) -
            m->mass_force * acceleration(m, z, drive);
 }
 
-// The state after h: the sampled model, or rest where friction holds the hub.
+// Moves an estimate on by the period of a model, under a torque on the hub [N m]. A hub
+// that friction holds stays at rest.
 static void predict_contact(const optimal_memory *m, const sampled_model *model,
                             estimator *e, double drive)
 {
@@ -314,7 +321,7 @@ static void predict_contact(const optimal_memory *m, const sampled_model *model,
     bool rests = fabs(z[PRESSED_RATE]) < 0.01 && fabs(torque) <= m->rig.stiction;
     double held = friction(m, z[PRESSED_RATE], torque);
 
-    // a wrong nominal stiffness shows as a wall that moves with the hub
+    // an error of k2 looks like a wall that moves with the hub
     double noise[4], wandering = K2_DOUBT * z[PRESSED_RATE] * m->rig.period;
     memcpy(noise, contact_noise, sizeof noise);
     noise[PRESSED_WALL] += wandering * wandering;
@@ -326,6 +333,7 @@ static void predict_contact(const optimal_memory *m, const sampled_model *model,
     }
 }
 
+// Moves the estimate in contact on to this sample and takes in its readings.
 static void observe_contact(optimal_memory *m, const controller_input *in)
 {
     estimator *e = &m->e;
@@ -333,11 +341,10 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
     predict_contact(m, &m->contact, e, drive);
     read_hub(e, PRESSED_RATE, in);
 
-    // the force is linear in the state but for friction: row times state, plus what is
-    // left
-    double whole = m->spring_force + m->mass_force * m->stiffness / m->inertia;
-    double row[4] = {whole, m->mass_force * m->rig.hub_damping / m->inertia, -whole,
-                     -m->mass_force / m->inertia};
+    // the force is row times state plus an offset, the part of friction
+    double per_angle = m->spring_force + m->mass_force * m->stiffness / m->inertia;
+    double row[4] = {per_angle, m->mass_force * m->rig.hub_damping / m->inertia,
+                     -per_angle, -m->mass_force / m->inertia};
     double linear = 0;
     for (int i = 0; i < 4; i++) {
         linear += row[i] * e->z[i];
@@ -349,9 +356,9 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
                       deviation * deviation);
 }
 
-// Limits a command so that the force it leaves at once stays positive, and does not brake
-// harder than stopping takes. x + x'/s grows as exp(s t) wherever it is above f/(4 k2): a
-// force a little above 4 k2 times it stops the hub, at ever faster a rate.
+// Limits a command [V] so that the force which it causes at once stays positive and is no
+// greater than stopping takes. x + x'/s grows as exp(s t) while it is above f/(4 k2), and
+// falls ever faster once f is a little above 4 k2 times it.
 static double limit_command(optimal_memory *m, const double *z, double command)
 {
     // what stopping takes may raise the ceiling
@@ -373,7 +380,7 @@ static double limit_command(optimal_memory *m, const double *z, double command)
     return fmax(-limit, fmin(command, limit));
 }
 
-// Holds what the beam presses with now.
+// Goes over to HOLD with the force that the beam presses with now.
 static void begin_hold(optimal_memory *m, double x)
 {
     m->mode = HOLD;
@@ -381,7 +388,7 @@ static void begin_hold(optimal_memory *m, double x)
     m->hold_command = m->stiffness * x / m->rig.torque_per_volt;
 }
 
-// Goes into the mode that is wanted, with the state in the model of that mode.
+// Goes over to the mode that the user wants, with an estimate in that mode's model.
 static void change_mode(optimal_memory *m, const controller_input *in)
 {
     const double *z = m->e.z;
@@ -398,17 +405,18 @@ static void change_mode(optimal_memory *m, const controller_input *in)
     }
 }
 
-// Friction holds the hub best in the middle of its band; the beam does the rest.
+// The command of HOLD [V]: it balances the beam, so that friction has the middle of its
+// band to hold the hub with. Goes back to PRESS when the averaged reading leaves the
+// wanted force.
 static double hold(optimal_memory *m, const controller_input *in)
 {
     const double smoothing = 0.05;
     m->held_force += smoothing * (in->force - m->held_force);
 
-    // the held force differs from the command: press again, with the wall's angle that
-    // this force implies
-    bool wanted = in->wanted_mode == HOLD;
-    const double differs = fabs(m->held_force - m->force);
-    if (!wanted && (m->wanted.changed || differs > 0.05 + 0.05 * m->force)) {
+    // press again, with the wall's angle that the averaged reading implies
+    bool locked = in->wanted_mode == HOLD;
+    const double error = fabs(m->held_force - m->force);
+    if (!locked && (m->wanted.changed || error > 0.05 + 0.05 * m->force)) {
         m->mode = PRESS;
         if (!m->flies) {
             m->e.z[PRESSED_WALL] = in->encoder - m->held_force / m->spring_force;
@@ -418,8 +426,8 @@ static double hold(optimal_memory *m, const controller_input *in)
     return m->hold_command;
 }
 
-// Asked to press before there is contact: the feedback round the angle at which the beam
-// would press if the wall were at its nominal place.
+// The command of PRESS before there is contact [V]: feedback about the angle at which the
+// beam would press if the wall were at its nominal angle.
 static double seek_wall(const optimal_memory *m)
 {
     const double *z = m->e.z;
@@ -428,6 +436,8 @@ static double seek_wall(const optimal_memory *m)
            m->gain[1] * z[FREE_FIRST_RATE];
 }
 
+// The command of PRESS in contact [V]: feedback about the aim, for the state when the
+// command takes effect. Goes over to HOLD where the hub rests with the right force.
 static double state_feedback_press(optimal_memory *m, const controller_input *in)
 {
     // the state when the command takes effect
@@ -437,7 +447,7 @@ static double state_feedback_press(optimal_memory *m, const controller_input *in
                         m->rig.torque_per_volt * in->voltage);
     }
 
-    // how far x is off the aim, which is a little short of the force
+    // the error of x from the aim, which is a little short of the wanted force
     const double *z = ahead.z, velocity = z[PRESSED_RATE];
     const double shortfall = fmin(SHORTFALL * m->force, MOST_SHORTFALL);
     const double aim = m->force * (1 - shortfall) / m->spring_force;
@@ -453,26 +463,26 @@ static double state_feedback_press(optimal_memory *m, const controller_input *in
         return m->hold_command;
     }
 
-    // friction against the motion, or the one that is to begin
+    // friction against the motion, or against the one wanted where the hub rests
     const double aim_rate = m->wanted.seen_rate / m->spring_force;
-    double against;
+    double friction_ahead;
     if (rests) {
-        const double way = aim_rate != 0 ? aim_rate : error;
-        against = copysign(m->rig.stiction, way);
+        const double direction = aim_rate != 0 ? aim_rate : error;
+        friction_ahead = copysign(m->rig.stiction, direction);
     } else {
-        against = friction(m, velocity, 0);
+        friction_ahead = friction(m, velocity, 0);
     }
 
-    // what keeps the aim, and the feedback round it
+    // the command that keeps the aim, and feedback of the deviations from it
     const double steady = (m->stiffness * aim + m->rig.hub_damping * aim_rate -
-                           z[PRESSED_TORQUE] + against) /
+                           z[PRESSED_TORQUE] + friction_ahead) /
                           m->rig.torque_per_volt;
     const double command =
         steady + m->gain[0] * error + m->gain[1] * (aim_rate - velocity);
     return limit_command(m, z, command);
 }
 
-// Contact is lost when the sensor has felt nothing for two samples.
+// Whether contact is lost: two readings in a row were not above the threshold.
 static bool contact_is_lost(optimal_memory *m, const controller_input *in)
 {
     const int most = 2;
@@ -487,7 +497,8 @@ static bool contact_is_lost(optimal_memory *m, const controller_input *in)
     return true;
 }
 
-// Updates the observer; the law itself decides where the flight ends.
+// Moves the observer on to this sample, and goes over from flight to contact and back
+// unless the user holds the law in a mode.
 static void observe(optimal_memory *m, const controller_input *in)
 {
     bool locked = in->wanted_mode >= 0;
@@ -511,8 +522,8 @@ static void observe(optimal_memory *m, const controller_input *in)
     }
 }
 
-// What is recorded beside the command: where the hub should be in contact, and what the
-// force is taken to be.
+// Fills in what is recorded beside the command: the mode, the angle wanted of the hub,
+// and the estimate of the force.
 static void report_estimate(const optimal_memory *m, const controller_input *in,
                             controller_output *out)
 {
