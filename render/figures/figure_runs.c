@@ -35,7 +35,7 @@ opened_run *run_open_changed(const char *name, const char *const *changes, int c
     opened_run *r = g_new0(opened_run, 1);
     status code = scenario_open(&r->scenario, name, keep_first_fault, &first);
 
-    // changes lie above what the file says
+    // changes override what the file says
     if (code == STATUS_OK && count > 0) {
         code = scenario_override_all(&r->scenario, (char *const *)changes, count,
                                      keep_first_fault, &first);
@@ -84,7 +84,7 @@ const char *nearest_signal(const char *name)
     return "force";
 }
 
-// One panel, "hub_angle+last_angle".
+// Reads the signals of one panel, such as "hub_angle+last_angle".
 static status read_signal_panel(const char *text, trace_panel *p, fault *f)
 {
     g_auto(GStrv) words = g_strsplit(text, "+", -1);
@@ -95,7 +95,7 @@ static status read_signal_panel(const char *text, trace_panel *p, fault *f)
         }
         int index = signal_find(name);
 
-        // known, with room, and of the panel's one unit
+        // the signal is known, the panel has room, and its signals have one unit
         FAULT_IF(index <= 0, f, STATUS_BAD_ARGUMENT,
                  "there is no signal '%s', did you mean '%s'?", name,
                  nearest_signal(name));
@@ -112,7 +112,7 @@ static status read_signal_panel(const char *text, trace_panel *p, fault *f)
     return STATUS_OK;
 }
 
-// All panels, "force,hub_angle+last_angle".
+// Reads the signals of all panels, such as "force,hub_angle+last_angle".
 static status read_signal_panels(const char *text, trace_panel *panels, int *count,
                                  fault *f)
 {
@@ -124,7 +124,7 @@ static status read_signal_panels(const char *text, trace_panel *panels, int *cou
         *p = (trace_panel){.weight = 1};
         TRY(read_signal_panel(text_or(words[*count], ""), p, f));
 
-        // what goes without saying for a panel of its first signal
+        // the first signal decides what else the panel shows
         const signal_info *signal = &signal_table[signal_index(p->signals[0])];
         p->with_zero = strcmp(signal->unit, "N") == 0 || strcmp(signal->unit, "V") == 0;
         p->wall = strcmp(signal->unit, "rad") == 0;
@@ -140,8 +140,8 @@ static status read_signal_panels(const char *text, trace_panel *panels, int *cou
 
 // ---- figures of runs
 
-// Measured data as a run without a scenario, with a name for the legend to be freed; NULL
-// as overlay_read fails.
+// Reads measured data as a run without a scenario; *name becomes its name in the legend,
+// to be freed. NULL if overlay_read fails.
 static opened_run *open_overlay(const char *overlay, const trace_panel *panels,
                                 int panel_count, char **name, fault *f)
 {
@@ -154,7 +154,7 @@ static opened_run *open_overlay(const char *overlay, const trace_panel *panels,
     return measured;
 }
 
-// Chooses the panels, adds measured data as one more run, and draws them all.
+// Makes the figure of runs: chooses the panels, and adds measured data as one more run.
 owned_figure *run_figure_create(const char *title, const trace_panel *panels,
                                 int panel_count, const trace_run *runs, int run_count,
                                 const figure_options *o, fault *f)

@@ -25,7 +25,7 @@ bool recipe_is_pair(const tree_node *node)
            node->first->next->next == NULL;
 }
 
-// A list of two numbers.
+// Reads a list of two numbers; reports any other node.
 static void read_pair(recipe_context *c, const tree_node *node, const char *what,
                       double *a, double *b)
 {
@@ -48,7 +48,7 @@ const tree_node *recipe_first(recipe_context *c, const tree_node *list, const ch
     return list->first;
 }
 
-// A number with its unit, within the range of its key.
+// Reads a number with its unit; reports one outside the range of its key.
 static void read_quantity_field(recipe_context *c, const tree_node *node,
                                 const recipe_key *key, double *value)
 {
@@ -85,6 +85,7 @@ static void read_item(recipe_context *c, const tree_node *node, const recipe_for
     }
 }
 
+// Reads "true" or "false"; reports any other word and takes it for false.
 static void read_truth(recipe_context *c, const tree_node *node, const char *what,
                        bool *value)
 {
@@ -154,7 +155,7 @@ void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form
         return;
     }
 
-    // what is not known
+    // keys that the form does not have are reported
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(&c->reader, map, child);
         if (key != NULL) {
@@ -162,7 +163,7 @@ void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form
         }
     }
 
-    // the rest in the form's order, whatever the recipe's
+    // the others are read in the form's order, not in the recipe's
     for (int i = 0; keys[i].key != NULL; i++) {
         const tree_node *child = recipe_child(map, keys[i].key);
         if (child != NULL) {

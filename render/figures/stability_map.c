@@ -18,7 +18,7 @@ typedef struct newmark_map newmark_map;
 // What a map shows.
 typedef struct newmark_kind {
     const char *change; // of the figure's scenario, for the run of reference
-    double beyond;      // that the cells' runs go on beyond the window [s]
+    double extra_time;  // by which the cells' runs outlast the window [s]
     int columns, rows;  // of cells
     const char *headings[MAP_PANELS]; // markup
     figure_axis scale;                // of the numbers; low values are bright
@@ -53,7 +53,7 @@ struct newmark_map {
 
 // ---- what lies over the cells
 
-// Adds the same layer to every panel.
+// Adds a series to every panel; if it has shades, each panel's are its own rings' values.
 static void add_layer(newmark_map *m, figure_series layer)
 {
     for (int panel = 0; panel < MAP_PANELS; panel++) {
@@ -68,14 +68,15 @@ static void add_layer(newmark_map *m, figure_series layer)
 
 // ---- the runs
 
-// Computes cells until none is left; several threads share one map.
+// Computes cells of a map until none is left (a thread's function). Several threads share
+// a map: each takes the next cell from the counter.
 static gpointer compute_cells(gpointer data)
 {
     newmark_map *m = data;
     const int rows = m->kind->rows, cells = m->kind->columns * rows,
               count = MAP_PANELS * cells;
 
-    // the longest runs, of the last panel, first: so both threads end together
+    // from the last panel back, whose runs take longest, so that threads end together
     for (int taken = g_atomic_int_add(&m->next, 1); taken < count;
          taken = g_atomic_int_add(&m->next, 1)) {
         int job = count - 1 - taken, panel = job / cells, cell = job % cells;
@@ -85,7 +86,8 @@ static gpointer compute_cells(gpointer data)
     return NULL;
 }
 
-// Places the cells and their lines, and computes the cells on two threads.
+// Sets the middles of the cells, adds the lines over them, and computes the cells on two
+// threads.
 static void compute_map(newmark_map *m)
 {
     const int columns = m->kind->columns, rows = m->kind->rows;
@@ -119,7 +121,7 @@ static void compute_map(newmark_map *m)
 
 // ---- the picture
 
-// Panels side by side with one vertical axis and one bar of colours.
+// Describes the figure: panels side by side with one vertical axis and one colour bar.
 static void describe_map_figure(newmark_map *m, const figure_options *o)
 {
     const newmark_kind *kind = m->kind;
@@ -143,8 +145,8 @@ static void describe_map_figure(newmark_map *m, const figure_options *o)
     figure_take_look(fig, &o->look);
 }
 
-// A map without its cells, and the run of reference; NULL with STATUS_BAD_SCENARIO if
-// that has no pulse, or with the run's status.
+// Makes a map whose cells are not yet computed, and the run of reference. NULL, with the
+// run's status or, if the run has no pulse of force, with STATUS_BAD_SCENARIO.
 static newmark_map *newmark_map_create(const newmark_kind *kind,
                                        const figure_order *order, const opened_run **run,
                                        fault *f)
@@ -159,7 +161,7 @@ static newmark_map *newmark_map_create(const newmark_kind *kind,
     m->base = (*run)->scenario;
     m->from = (*run)->result.summary.first_contact_s;
     m->peak = (*run)->result.summary.first_pulse_peak_N;
-    m->base.parameters.run.duration = m->from + WINDOW + kind->beyond;
+    m->base.parameters.run.duration = m->from + WINDOW + kind->extra_time;
     if (!isfinite(m->from) || !(m->peak > 0)) {
         fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to compare",
                   order->which->scenario);
@@ -186,7 +188,8 @@ static void sample_force(const trace *t, double from, double *out)
     }
 }
 
-// Root of the mean square difference from the reference, in per cent of its peak.
+// Runs a method and returns the root of the mean square difference of its force from the
+// reference, in per cent of the reference's peak; infinite if the run fails.
 static double force_error(const newmark_map *m, const method_parameters *method)
 {
     run_result result;
@@ -202,13 +205,13 @@ static double force_error(const newmark_map *m, const method_parameters *method)
     sample_force(&result.trace, m->from, force);
     run_finish(&result);
 
-    // root of the mean square, in per cent of the peak
     for (int i = 0; i < SAMPLES; i++) {
         sum += (force[i] - m->force[i]) * (force[i] - m->force[i]);
     }
     return 100 * sqrt(sum / SAMPLES) / m->peak;
 }
 
+// The error of Newmark's method with a pair (beta, gamma), at the step of a panel.
 static double newmark_error(const newmark_map *m, int panel, double beta, double gamma)
 {
     method_parameters method = m->base.parameters.method;
@@ -219,8 +222,11 @@ static double newmark_error(const newmark_map *m, int panel, double beta, double
     return force_error(m, &method);
 }
 
-// Generalised-alpha's own errors, as rings at the pairs (beta, gamma) of its spectral
-// radii.
+// Adds rings with the errors of the generalised-alpha method. With the spectral radius
+// rho it has
+//
+//     am = (2 rho - 1)/(rho + 1),    af = rho/(rho + 1),
+//     gamma = 1/2 - am + af,         beta = (1 - am + af)^2/4
 static void add_rings(newmark_map *m)
 {
     method_parameters method = m->base.parameters.method;
@@ -243,11 +249,12 @@ static void add_rings(newmark_map *m)
                                  .radius = 3.6, .no_line = true, .rim = true});
 }
 
-// How far Newmark's force is from the event method's, for the corrected arm.
+// Makes the map of the error of Newmark's force against the event method's, for the
+// corrected arm.
 status stability_map(const figure_order *order, artwork *out, fault *f)
 {
     static const newmark_kind kind = {.change = "method.name=event",
-                                      .beyond = 0.01,
+                                      .extra_time = 0.01,
                                       .columns = MAP_COLUMNS,
                                       .rows = MAP_ROWS,
                                       .headings = {"<i>h</i> = 5\u2009ms",
@@ -294,7 +301,7 @@ static const struct {
                                   {REEVALUATE_NONE, 1e-3},
                                   {REEVALUATE_NONE, 2e-4}};
 
-// The largest force in times that of Fig. 3.4.
+// The largest force of a run with a pair (beta, gamma), over that of Fig. 3.4.
 static double printed_peak(const newmark_map *m, int panel, double beta, double gamma)
 {
     run_result result;
@@ -312,7 +319,7 @@ static double printed_peak(const newmark_map *m, int panel, double beta, double 
     return force;
 }
 
-// The largest force of the printed arm.
+// Makes the map of the largest force of the printed arm.
 status printed_stability_map(const figure_order *order, artwork *out, fault *f)
 {
     static const newmark_kind kind = {.columns = 20,

@@ -66,7 +66,7 @@ bool scale_take_ends(axis_scale *s, const figure_axis *from)
     return !scale_is_empty(s);
 }
 
-// Puts equal ends apart, and a share of the range round both.
+// Separates equal ends, and adds a share of the range beyond both.
 void scale_widen(axis_scale *s, double share)
 {
     assert(share >= 0);
@@ -75,7 +75,7 @@ void scale_widen(axis_scale *s, double share)
         s->high = 1;
     }
 
-    // equal ends go apart
+    // equal ends, and on a logarithmic scale near ones, are separated
     double size = fmax(fabs(s->low), fabs(s->high)), range = s->high - s->low;
     if (s->kind == SCALE_LOGARITHMIC && range < LEAST_DECADES) {
         s->low -= (LEAST_DECADES - range) / 2;
@@ -94,12 +94,12 @@ void scale_widen(axis_scale *s, double share)
 // ==== axes
 
 #define MINOR_SPACING 2.5 // least distance of minor ticks [pt]
-#define FEW_DECADES   1.2 // below which 2 and 5 always have ticks, so that there are some
+#define FEW_DECADES   1.2 // axes with fewer have ticks at 2 and 5 in any case
 
 // ---- ticks
 
-// "0.01", "20", "2·10<sup>−6</sup>" for mantissa times the power of ten, alike all along
-// an axis.
+// Writes mantissa times a power of ten as "0.01", "20" or "2·10<sup>−6</sup>"; all labels
+// of an axis have the same form.
 static void format_decade(const axis_scale *s, int mantissa, int power,
                           char text[AXIS_LABEL])
 {
@@ -122,15 +122,15 @@ static void format_decade(const axis_scale *s, int mantissa, int power,
              abs(power));
 }
 
-// Powers of ten, as far apart as room asks for, or 1, 2, 5 of every decade where they
-// fit.
+// Chooses the ticks of a logarithmic axis: 1, 2 and 5 of every decade where there is
+// room, else powers of ten, as far apart as the wanted number asks for.
 static void choose_decades(axis *a, int wanted)
 {
     static const int mantissas[] = {1, 2, 5};
     const axis_scale *s = &a->scale;
     const double decades = s->high - s->low;
 
-    // how many in a decade, or decades from one to the next
+    // ticks in a decade, and decades from one tick to the next
     int spacing = 1, per_decade = 1;
     if (3 * decades <= wanted || decades < FEW_DECADES) {
         per_decade = 3;
@@ -139,12 +139,12 @@ static void choose_decades(axis *a, int wanted)
         spacing++;
     }
 
-    // one label alone gives no scale
+    // a single label would not show the scale
     while (spacing > 1 && floor(s->high / spacing) - ceil(s->low / spacing) < 1) {
         spacing--;
     }
 
-    // all that lie on the axis
+    // those that lie on the axis
     for (int power = (int)floor(s->low); power <= (int)ceil(s->high); power++) {
         if (power % spacing != 0) {
             continue;
@@ -160,6 +160,7 @@ static void choose_decades(axis *a, int wanted)
     }
 }
 
+// Takes the ticks that the figure's axis lists.
 static void take_given_ticks(axis *a)
 {
     for (int i = 0; i < a->from->tick_count && i < TICKS_MOST; i++) {
@@ -168,7 +169,7 @@ static void take_given_ticks(axis *a)
     }
 }
 
-// Round values at even distances, with labels of their own.
+// Chooses the ticks of a linear axis: round values at even distances, with their labels.
 static void choose_even_ticks(axis *a, int wanted)
 {
     ticks_between(&a->even, a->scale.low, a->scale.high, wanted);
@@ -180,7 +181,7 @@ static void choose_even_ticks(axis *a, int wanted)
     }
 }
 
-// Ticks as the axis gives them, powers of ten, or round values.
+// Chooses the ticks of an axis: those that it lists, or as its scale asks for.
 void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
 {
     a->from = from;
@@ -195,7 +196,7 @@ void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
     }
 }
 
-// As many ticks as the length has room for, within both bounds.
+// The number of ticks that a length has room for at a spacing, between two bounds.
 int axis_tick_count(double length, double spacing, int least, int most)
 {
     double count = length / spacing;
@@ -210,7 +211,8 @@ int axis_tick_count(double length, double spacing, int least, int most)
 
 // ---- minor ticks
 
-// Positions of minor ticks, as parts of the step, next to and between major ticks.
+// Computes the minor ticks of a linear axis, which divide its step into equal parts; none
+// if they would be too near each other. Returns their number.
 static int minor_even(const axis *a, double length, double *at)
 {
     const ticks *t = &a->even;
@@ -219,7 +221,7 @@ static int minor_even(const axis *a, double length, double *at)
         return 0;
     }
 
-    // inside the axis, between the major ones
+    // multiples of a part of the step that are on the axis and not at a major tick
     double part = t->step / t->minor,
            spacing = part / (a->scale.high - a->scale.low) * length;
     for (int k = -t->minor; k <= t->minor * t->count && spacing > MINOR_SPACING; k++) {
@@ -231,7 +233,8 @@ static int minor_even(const axis *a, double length, double *at)
     return count;
 }
 
-// Between decades the whole numbers, on linear axes parts of a step.
+// Computes the minor ticks of an axis of a length: 2 to 9 of every decade, or on a linear
+// axis parts of a step. Returns their number.
 int axis_minor_ticks(const axis *a, double length, double at[AXIS_MINOR])
 {
     const axis_scale *s = &a->scale;
@@ -260,7 +263,7 @@ static bool has_text(const char *text)
     return text != NULL && text[0] != '\0';
 }
 
-// A unit with its factor, as markup that is never broken into lines.
+// A unit in brackets with its power of ten, as markup that is not broken into lines.
 static char *unit_markup(const char *unit, int exponent)
 {
     char factor[64] = "";

@@ -5,7 +5,7 @@
 
 #define COLUMN     0.12 // width of a column [pt]
 #define CLIP_SPACE 4.0  // kept round the plane, so that line ends stay out of sight [pt]
-#define FARTHEST   1e9  // beyond it a point is as far as any [pt]
+#define FARTHEST   1e9  // coordinates are limited to this [pt]
 
 double plane_x(const plane *p, double x)
 {
@@ -18,7 +18,8 @@ double plane_y(const plane *p, double y)
     return p->box.y + p->box.height * ((p->y.high - at) / (p->y.high - p->y.low));
 }
 
-// A value of an array of doubles that lie `stride` bytes apart.
+// Value `index` of an array whose values lie the series' stride in bytes apart (0: the
+// size of a double).
 static double value_at(const figure_series *s, const double *values, size_t index)
 {
     double value;
@@ -63,15 +64,16 @@ typedef struct point {
     double x, y;
 } point;
 
-// Draws a line piece by piece, leaving out what lies outside.
+// A pen that follows a line point by point and hands the parts inside a rectangle to a
+// sink.
 typedef struct pen {
     double left, top, right, bottom;
     stroke_sink sink;
     void *context;
-    point at;       // last point given, inside or not
-    bool has_point; // a line is in progress
-    bool moved;     // the sink's line ends at `at`
-    bool alone;     // `at` has no line to it yet
+    point last;        // last point given, inside or not
+    bool has_point;    // a line is in progress
+    bool sink_at_last; // the sink's line ends at `last`
+    bool alone;        // `last` is the only point of its line
 } pen;
 
 static bool inside(const pen *p, point q)
@@ -79,8 +81,8 @@ static bool inside(const pen *p, point q)
     return q.x >= p->left && q.x <= p->right && q.y >= p->top && q.y <= p->bottom;
 }
 
-// Narrows [*from, *to] to the part of a line where start + t delta lies within low and
-// high.
+// Narrows [*from, *to] to the shares t of a line at which start + t delta lies between
+// low and high (Liang and Barsky's clipping). False if none is left.
 static bool clip_share(double start, double delta, double low, double high, double *from,
                        double *to)
 {
@@ -88,52 +90,52 @@ static bool clip_share(double start, double delta, double low, double high, doub
         return start >= low && start <= high;
     }
 
-    // it meets both borders
+    // the shares at which it crosses the two borders
     const double at_low = (low - start) / delta, at_high = (high - start) / delta;
     *from = fmax(*from, fmin(at_low, at_high));
     *to = fmin(*to, fmax(at_low, at_high));
     return *from <= *to;
 }
 
+// Ends a line. A point that stayed alone becomes a dot.
 static void pen_lift(pen *p)
 {
-    if (p->has_point && p->alone && inside(p, p->at)) {
-        p->sink(p->context, STROKE_DOT, p->at.x, p->at.y);
+    if (p->has_point && p->alone && inside(p, p->last)) {
+        p->sink(p->context, STROKE_DOT, p->last.x, p->last.y);
     }
-    p->has_point = p->moved = false;
+    p->has_point = p->sink_at_last = false;
 }
 
-// Draws the part of the line to q that lies inside.
+// Continues the line to q, or begins one there. The sink gets the part that lies inside,
+// with a move before it where the sink's line does not end at its beginning.
 static void pen_to(pen *p, point q)
 {
     q.x = fmax(-FARTHEST, fmin(FARTHEST, q.x));
     q.y = fmax(-FARTHEST, fmin(FARTHEST, q.y));
     if (p->has_point) {
-        point a = p->at;
+        point a = p->last;
         double from = 0, to = 1;
-
-        // the part inside
         if (clip_share(a.x, q.x - a.x, p->left, p->right, &from, &to) &&
             clip_share(a.y, q.y - a.y, p->top, p->bottom, &from, &to)) {
-            if (!p->moved) {
+            if (!p->sink_at_last) {
                 p->sink(p->context, STROKE_MOVE, a.x + from * (q.x - a.x),
                         a.y + from * (q.y - a.y));
             }
 
-            // exactly q where nothing is cut off
+            // q itself if nothing is cut off, without rounding
             point end = q;
             if (to != 1) {
                 end = (point){a.x + to * (q.x - a.x), a.y + to * (q.y - a.y)};
             }
             p->sink(p->context, STROKE_LINE, end.x, end.y);
-            p->moved = to == 1;
+            p->sink_at_last = to == 1;
         } else {
-            p->moved = false;
+            p->sink_at_last = false;
         }
     }
     p->alone = !p->has_point;
     p->has_point = true;
-    p->at = q;
+    p->last = q;
 }
 
 // ---- decimation
@@ -144,14 +146,15 @@ typedef struct numbered {
     size_t number;
 } numbered;
 
-// The points of one column that matter, with their numbers to keep their order.
+// The points of one narrow column that show: the first, the last, and those of the
+// greatest and the least y. Their numbers keep their order.
 typedef struct column {
     double index; // of the column
     size_t count;
     numbered first, low, high, last;
 } column;
 
-// A further point of a column.
+// Takes a further point into a column; y points down.
 static void column_add(column *c, numbered q)
 {
     c->count++;
@@ -164,14 +167,15 @@ static void column_add(column *c, numbered q)
     }
 }
 
-// Hands the points of a column that matter to the pen, and empties it.
+// Hands the points of a column that show to the pen, in their order and each once, and
+// empties the column.
 static void column_flush(column *c, pen *p)
 {
     if (c->count == 0) {
         return;
     }
 
-    // first, lowest and highest in their order, last: each once
+    // a point that is two of these at once has the same number twice in a row
     numbered all[] = {c->first, c->low, c->high, c->last};
     if (c->low.number >= c->high.number) {
         all[1] = c->high;
@@ -185,7 +189,7 @@ static void column_flush(column *c, pen *p)
     c->count = 0;
 }
 
-// Columns only make sense where x never goes back.
+// Whether x never decreases along a series, which reduction by columns needs.
 static bool x_ascends(const figure_series *s)
 {
     double last = -(double)INFINITY;
@@ -201,8 +205,9 @@ static bool x_ascends(const figure_series *s)
     return true;
 }
 
-// Hands the strokes of a series to a sink: cut at the plane's edge, with a gap at
-// every missing point, and where points are many only those that show in their column.
+// Hands the strokes of a series to a sink: clipped at the plane's edge and with a gap at
+// every missing point. Where points are many, only those that show in their column of the
+// page are used.
 void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void *context)
 {
     pen tip = {.left = p->box.x - CLIP_SPACE,
@@ -225,7 +230,7 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
             continue;
         }
 
-        // into its column, or a new one
+        // a point joins the present column, or begins a new one
         point q = {plane_x(p, x), plane_y(p, y)};
         double index = floor((q.x - p->box.x) / COLUMN);
         if (columns && c.count > 0 && index == c.index) {

@@ -5,7 +5,8 @@
 #include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
 
-// The small cost of being away from the corners, below one unit of ink.
+// The cost of a place's distance from the corners, less than one unit of ink, so that it
+// decides among places of equal ink. The left side and the bottom cost a little more.
 static double corner_cost(const placement *g, const figure_rect *r, double margin)
 {
     double left = r->x - g->box.x - margin, above = r->y - g->box.y - margin;
@@ -16,7 +17,8 @@ static double corner_cost(const placement *g, const figure_rect *r, double margi
     return 0.4 * across + 0.4 * down;
 }
 
-// The ink of everything above and left of each cell.
+// The ink of all cells above and left of each cell, itself included (a summed-area
+// table).
 static placement summed_ink(const placement *g)
 {
     placement sums = *g;
@@ -38,7 +40,8 @@ static double placement_find(const placement *g, double width, double height,
 {
     const placement sums = summed_ink(g);
 
-    // its size in whole cells, with the margin on both sides, and what is left of them
+    // its size in whole cells, with the margin on both sides, and by how much the cells
+    // are larger
     const double cell_width = g->box.width / PLACEMENT_COLUMNS;
     const double cell_height = g->box.height / PLACEMENT_ROWS;
     const int columns = (int)ceil((width + 2 * margin) / cell_width);
@@ -46,7 +49,7 @@ static double placement_find(const placement *g, double width, double height,
     const double slack_x = columns * cell_width - width - 2 * margin;
     const double slack_y = rows * cell_height - height - 2 * margin;
 
-    // every place where it fits, with the ink within from the sums up to its corners
+    // every place where it fits; the ink within follows from the sums at its four corners
     double best = (double)INFINITY, best_ink = (double)INFINITY;
     for (int r = 0; r + rows <= PLACEMENT_ROWS; r++) {
         for (int c = 0; c + columns <= PLACEMENT_COLUMNS; c++) {
@@ -54,7 +57,8 @@ static double placement_find(const placement *g, double width, double height,
                                sums.ink[r][c + columns] - sums.ink[r + rows][c] +
                                sums.ink[r][c];
 
-            // in the right and the lower half it stands against the far edge
+            // in the right half it stands at the right of its cells, in the lower half at
+            // their bottom
             figure_rect place = {g->box.x + c * cell_width + margin,
                                  g->box.y + r * cell_height + margin, width, height};
             if (2 * c > PLACEMENT_COLUMNS - columns) {
@@ -64,7 +68,7 @@ static double placement_find(const placement *g, double width, double height,
                 place.y += slack_y;
             }
 
-            // the least ink, among equal ones the nearest to a corner
+            // the corner's cost decides between equal inks
             double cost = ink + corner_cost(g, &place, margin);
             if (cost < best) {
                 best = cost;
@@ -80,14 +84,14 @@ static double placement_find(const placement *g, double width, double height,
 
 #define INSET_ROOM 0.1 // of the data's range, kept free above and below them
 
-// The inset's axes within its outer rectangle.
+// Lays out the inset's axes within its outer rectangle: ranges, ticks and the box.
 static void divide_inset(const drawing *d, panel_layout *l)
 {
     const figure_panel *panel = l->panel;
     plane *p = &l->inset_plane;
     double line = height_of(d, figure_text_of(d, "0", d->style.small));
 
-    // the stretch of x, and all y that lie in it
+    // the enlarged interval of x, and the range of all y in it
     p->x = scale_empty(d->x.scale.kind);
     scale_include(&p->x, panel->zoom_from);
     scale_include(&p->x, panel->zoom_to);
@@ -106,7 +110,7 @@ static void divide_inset(const drawing *d, panel_layout *l)
     double wide = widest_tick(d, &l->inset_x, d->style.small);
     double width = l->inset.width - left - wide / 2;
 
-    // the digits of a short stretch of time are many: labels that would meet are left out
+    // labels of a short interval have many digits: only every n-th that fits is kept
     double space = l->inset_x.even.step / (p->x.high - p->x.low) * width;
     int every = 1;
     if (space > 0) {
@@ -121,10 +125,10 @@ static void divide_inset(const drawing *d, panel_layout *l)
                            l->inset.height - 3 - line - TICK_SPACE - 2};
 }
 
-// Where the inset covers no curve, in the largest of three sizes that fits.
+// Places the inset where it covers no curve, in the largest of three sizes that fits. It
+// is left out if none does, or if it would be too small to read.
 void place_inset(const drawing *d, panel_layout *l, placement *grid)
 {
-    // the largest that covers no curve
     static const double scales[] = {1, 0.85, 0.7};
     const figure_panel *panel = l->panel;
     const figure_rect *box = &l->plane.box;
@@ -135,7 +139,7 @@ void place_inset(const drawing *d, panel_layout *l, placement *grid)
         return;
     }
 
-    // one too small to read is rather left out
+    // sizes from the largest on
     for (int i = 0; i < 3; i++) {
         figure_rect found;
         double width = 0.4 * scales[i] * box->width,
@@ -152,7 +156,7 @@ void place_inset(const drawing *d, panel_layout *l, placement *grid)
     }
 }
 
-// The inset as a panel of its own, and a frame round the part that it enlarges.
+// Draws the inset as a small panel, and a frame round the part that it enlarges.
 void draw_inset(drawing *d, const panel_layout *l)
 {
     const plane *p = &l->inset_plane;
@@ -194,7 +198,9 @@ typedef struct legend_run {
     bool draw;      // or only measured
 } legend_run;
 
-// Lays out the entries of a panel's labelled series; on a narrow page with their symbols.
+// Lays out the entries of a legend, one for each series with a label, in rows or in a
+// column, and draws them if the run asks for it. On a narrow page symbols stand for
+// labels. Returns the rectangle that they take up.
 static figure_rect lay_entries(drawing *d, const panel_layout *l, legend_run run)
 {
     double x = run.x, y = run.y, line = 0, widest = 0;
@@ -211,7 +217,7 @@ static figure_rect lay_entries(drawing *d, const panel_layout *l, legend_run run
         text.width = run.wrapped;
         const text_size size = text_measure(d->context, &text);
 
-        // a new row where this one is full
+        // a new row begins where this one is full
         const double width = size.width + SWATCH + SWATCH_SPACE;
         if (x > run.x && (run.column || x + width > run.right)) {
             x = run.x;
@@ -243,13 +249,14 @@ static int labelled_series(const figure_panel *panel)
 
 // ---- where they go
 
-// Returns false if there is no room inside the panel.
+// Places the legend of a panel: in the panel, or in a row or column above it. False if it
+// belongs into the panel and has no room there.
 bool place_legend(drawing *d, panel_layout *l, const placement *grid)
 {
     l->legend = (figure_rect){0};
     l->legend_inside = false;
 
-    // nothing to tell apart
+    // a panel with a single series, or none, needs no legend
     if (d->fig->common_legend || l->panel->keyless || labelled_series(l->panel) < 2) {
         l->legend_row = l->legend_column = false;
         return true;
@@ -284,7 +291,7 @@ bool place_legend(drawing *d, panel_layout *l, const placement *grid)
 
 // ---- strokes
 
-// The legend at its place, on a background where it stands above the panel.
+// Draws the legend of a panel, above the panel on a background.
 void draw_panel_legend(drawing *d, const panel_layout *l)
 {
     if (l->legend.width > 0 && !l->legend_inside && !d->fig->transparent) {
@@ -301,7 +308,8 @@ void draw_panel_legend(drawing *d, const panel_layout *l)
 
 // ---- one for all panels
 
-// The entries of all panels, or of the figure's key, in rows from the left.
+// Lays out, and draws if asked, the legend that all panels share: the entries of the
+// figure's key, or of the first panel, in rows. Returns its height.
 double common_legend(drawing *d, bool draw)
 {
     const panel_layout key = {.panel = d->fig->key};

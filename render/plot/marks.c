@@ -8,7 +8,7 @@
 #define LEVEL_ROOM    10.0 // above a level, for its label [pt]
 #define NOTE_SPACE    4.0  // from a note to its point [pt]
 #define DOT_RADIUS    1.3  // of the point of a note or a mark [pt]
-#define INSIDE_SHARE  0.75 // of the first panel's height, where labels of marks may stand
+#define INSIDE_SHARE  0.75 // upper share of the first panel, for labels of marks
 
 #define POINT_SPACE   2.5 // from a mark's point to its label [pt]
 #define LINE_SPACE    2.0 // from its line to its label
@@ -17,7 +17,7 @@
 
 enum {
     INSIDE_MOST = 6, // labels of marks inside the first panel
-    POINT_ROWS = 3   // that a label may be away from its point
+    POINT_ROWS = 3   // rows that a label may be away from its point
 };
 
 // Whether the label of a mark stands at its point.
@@ -36,14 +36,14 @@ static bool has_point(const drawing *d, const figure_mark *m)
 
 // ---- where labels go
 
-// What labels of marks above the panels take up, from left to right [pt].
+// The horizontal extents of the labels of marks above the panels [pt].
 typedef struct mark_labels {
     double begins[MARKS_LABELLED], ends[MARKS_LABELLED];
     bool placed[MARKS_LABELLED];
     int count;
 } mark_labels;
 
-// The rightmost mark that is not placed.
+// The rightmost mark whose label has no place yet; -1 if all have one.
 static int next_mark(const drawing *d, const mark_labels *l)
 {
     int next = -1;
@@ -55,7 +55,7 @@ static int next_mark(const drawing *d, const mark_labels *l)
     return next;
 }
 
-// Puts a label at the right of its line if the page has room there, or else at its left.
+// Puts a label to the right of its mark's line, or to the left if the page ends before.
 static void place_beside_line(const drawing *d, mark_labels *l, int index)
 {
     const figure_mark *m = &d->fig->marks[index];
@@ -71,7 +71,8 @@ static void place_beside_line(const drawing *d, mark_labels *l, int index)
     l->ends[index] = l->begins[index] + width;
 }
 
-// The lowest row in which a label is above every other that it or its line would meet.
+// The lowest row for a label in which it stands above all labels that it would cover, or
+// whose lines it would cross.
 static int row_above(const drawing *d, const mark_labels *l, int index)
 {
     const double begins = l->begins[index], ends = l->ends[index];
@@ -86,15 +87,15 @@ static int row_above(const drawing *d, const mark_labels *l, int index)
     return row;
 }
 
-// Labels of marks stand like flags at the right of their lines. Where one would meet the
-// next flag or its line it goes a row higher, so that no line crosses a label. Returns
-// the number of rows.
+// Places the labels of marks above the panels, like flags at the right of their lines. A
+// label that would meet the next flag or its line goes a row higher, so that no line
+// crosses a label. Returns the number of rows.
 int place_marks(drawing *d)
 {
     mark_labels l = {.count = MIN(d->fig->mark_count, MARKS_LABELLED)};
     int rows = 0;
 
-    // from the right to the left
+    // from right to left, so that a label meets only those that are placed already
     for (int index = next_mark(d, &l); index >= 0; index = next_mark(d, &l)) {
         const figure_mark *m = &d->fig->marks[index];
         d->mark_row[index] = -1;
@@ -129,8 +130,8 @@ static bool crosses_line(const drawing *d, const figure_rect *r, int index)
     return false;
 }
 
-// Whether a label of mark `index` can stand at a place of the first panel: off curves,
-// and off the lines of other marks unless it may lie over them.
+// Whether the label of mark `index` can stand at r: within the first panel, clear of
+// curves and, unless over_lines allows it, of the lines of other marks.
 static bool label_fits(const drawing *d, const placement *grid, const figure_rect *r,
                        int index, bool over_lines)
 {
@@ -141,7 +142,8 @@ static bool label_fits(const drawing *d, const placement *grid, const figure_rec
            (over_lines || !crosses_line(d, r, index));
 }
 
-// A place for the label of one mark, as high as can be; false if there is none.
+// Finds a place beside the line of a mark for its label inside the first panel, as high
+// as possible and clear of the places that are taken. False if there is none.
 static bool find_inside(const drawing *d, const placement *grid, int index,
                         const figure_rect *taken, int taken_count, figure_rect *found)
 {
@@ -150,7 +152,7 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
     const double x = plane_x(&d->panels[0].plane, m->x);
     const double width = width_of(d, m->label, d->style.small);
 
-    // from above, at the right of its line, then at the left
+    // rows from the top down; in each the right side of the line, then the left
     const double lefts[] = {x + LINE_SPACE, x - LINE_SPACE - width};
     const int sides = m->onwards ? 1 : 2;
     for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height;
@@ -170,9 +172,9 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
     return false;
 }
 
-// A place for a label beside the point of its mark: above, at its height or below, on
-// either side, as near as can be, rather not over another mark's line; false if there is
-// none.
+// Finds a place for a label beside the point of its mark: as near as possible, above the
+// point, at its height or below, on either side. At each distance places clear of other
+// marks' lines come first. False if there is none.
 static bool find_at_point(const drawing *d, const placement *grid, int index,
                           figure_rect *found)
 {
@@ -181,11 +183,11 @@ static bool find_at_point(const drawing *d, const placement *grid, int index,
     double x = plane_x(p, m->x), y = plane_y(p, m->y);
     double width = width_of(d, m->label, d->style.small);
 
-    // rows ever farther away, each first off other marks' lines, then over them
+    // places 0 to 5: right and left above, at the point's height, and below
     const double lefts[] = {x + POINT_SPACE, x - POINT_SPACE - width};
     for (int row = 0; row < POINT_ROWS; row++) {
-        const double away = POINT_SPACE + row * MARK_ROW;
-        const double tops[] = {y - away - MARK_ROW, y - MARK_ROW / 2, y + away};
+        const double distance = POINT_SPACE + row * MARK_ROW;
+        const double tops[] = {y - distance - MARK_ROW, y - MARK_ROW / 2, y + distance};
         for (int over_lines = 0; over_lines < 2; over_lines++) {
             for (int place = 0; place < 6; place++) {
                 figure_rect r = {lefts[place % 2], tops[place / 2], width, MARK_ROW};
@@ -199,7 +201,8 @@ static bool find_at_point(const drawing *d, const placement *grid, int index,
     return false;
 }
 
-// The place of each label whose mark has a point.
+// Places the label of each mark with a point beside it. A label without room there joins
+// those above the panels; false if there is one.
 bool place_pointed_marks(drawing *d, placement *grid)
 {
     bool placed = true;
@@ -210,7 +213,7 @@ bool place_pointed_marks(drawing *d, placement *grid)
             continue;
         }
 
-        // without a place it stands with the labels of the others
+        // without a place it is put with the labels of marks that have no point
         if (!has_point(d, &d->fig->marks[i]) || !find_at_point(d, grid, i, r)) {
             d->mark_away[i] = true;
             placed = false;
@@ -221,13 +224,14 @@ bool place_pointed_marks(drawing *d, placement *grid)
     return placed;
 }
 
-// All labels inside the first panel, or none.
+// Places the labels of all marks inside the first panel. False, with none placed, if one
+// finds no room.
 bool place_marks_inside(drawing *d, placement *grid)
 {
     figure_rect taken[INSIDE_MOST];
     int index[INSIDE_MOST], count = 0;
 
-    // a place for every label, or none
+    // a place for every label that needs one
     for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
         if (d->fig->marks[i].label == NULL ||
             !scale_holds(&d->x.scale, d->fig->marks[i].x) || at_point(d, i)) {
@@ -255,8 +259,8 @@ bool place_marks_inside(drawing *d, placement *grid)
 
 // ---- levels
 
-// Where the label of a level stands: at the right or left end of its line, above or
-// below, where no curve runs.
+// Chooses the place of a level's label: at the right or left end of its line, above or
+// below it, whichever has the least ink under it.
 static figure_rect level_label(const drawing *d, const panel_layout *l, int index,
                                const placement *grid)
 {
@@ -264,7 +268,7 @@ static figure_rect level_label(const drawing *d, const panel_layout *l, int inde
     double y = plane_y(&l->plane, l->panel->levels[index].y);
     double width = width_of(d, l->panel->levels[index].label, d->style.small);
 
-    // the four places, the one with least ink under it
+    // place k: end k/2 of the line, above it (k even) or below
     const double lefts[] = {box->x + box->width - 2 - width, box->x + 3};
     const double tops[] = {y - LEVEL_ROOM, y};
     figure_rect best = {0};
@@ -279,8 +283,8 @@ static figure_rect level_label(const drawing *d, const panel_layout *l, int inde
     return best;
 }
 
-// Where a note stands: at the right of its point, at the left where the panel ends, or
-// below.
+// The place of a note's text: right of its point, or left of it if the panel ends before,
+// or below it if neither side has room.
 static figure_rect note_place(const drawing *d, const panel_layout *l,
                               const figure_note *n)
 {
@@ -304,7 +308,8 @@ static figure_rect note_place(const drawing *d, const panel_layout *l,
                          width, height};
 }
 
-// Where levels, notes and marks are in a panel, so that nothing else covers them.
+// Adds the ink of levels, notes and marks to the grid of a panel, so that nothing else is
+// placed over them, and places the labels of levels.
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
 {
     const figure_rect *box = &l->plane.box;
@@ -339,7 +344,7 @@ void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
 
 // ---- strokes
 
-// Shades the intervals behind the data.
+// Shades the figure's intervals over the height of a panel, behind the data.
 void draw_intervals(const drawing *d, const plane *p)
 {
     const figure_rect *box = &p->box;
@@ -348,7 +353,7 @@ void draw_intervals(const drawing *d, const plane *p)
     clip_to(d->cr, box);
     set_colour(d->cr, d->style.colours->shade);
 
-    // each as far as the axis shows it
+    // each is cut at the ends of the axis
     for (int i = 0; i < d->fig->interval_count; i++) {
         const figure_interval *v = &d->fig->intervals[i];
         double low = scale_value(p->x.kind, p->x.low),
@@ -364,6 +369,7 @@ void draw_intervals(const drawing *d, const plane *p)
     cairo_restore(d->cr);
 }
 
+// Sets the dashed line of marks and levels.
 static void set_mark_line(const drawing *d)
 {
     static const double pattern[] = {2.4, 1.8};
@@ -371,8 +377,8 @@ static void set_mark_line(const drawing *d)
     cairo_set_dash(d->cr, pattern, 2, 0);
 }
 
-// Leaves legends and labels out of what may be drawn on: the even-odd rule cuts their
-// rectangles out of the page's.
+// Clips to the page without legends and labels of points: by the even-odd rule their
+// rectangles are holes in the page's.
 void clip_out_labels(const drawing *d)
 {
     cairo_new_path(d->cr);
@@ -392,7 +398,7 @@ void clip_out_labels(const drawing *d)
     cairo_clip(d->cr);
 }
 
-// Whether a vertical line meets a legend or the label of a point.
+// Whether a vertical line at x meets a legend or the label of a point.
 static bool meets_label(const drawing *d, double x)
 {
     for (int i = 0; i < d->fig->panel_count; i++) {
@@ -411,7 +417,8 @@ static bool meets_label(const drawing *d, double x)
     return false;
 }
 
-// The hairline of a mark from `top` down to `bottom`, interrupted by legends.
+// Draws the line of a mark from `top` down to `bottom`, interrupted by legends and
+// labels.
 static void draw_hairline(const drawing *d, double x, double top, double bottom)
 {
     cairo_save(d->cr);
@@ -423,6 +430,7 @@ static void draw_hairline(const drawing *d, double x, double top, double bottom)
     cairo_restore(d->cr);
 }
 
+// Draws the dot of a note or a mark at a point given in the axes' units.
 static void draw_dot(const drawing *d, const plane *p, double x, double y)
 {
     set_colour(d->cr, d->style.colours->text);
@@ -431,7 +439,7 @@ static void draw_dot(const drawing *d, const plane *p, double x, double y)
     cairo_fill(d->cr);
 }
 
-// Dots of marks that have a point, with the labels that stand at it.
+// Draws the dots of marks that have a point, and the labels that stand beside them.
 void draw_points(drawing *d)
 {
     const plane *p = &d->panels[0].plane;
@@ -448,7 +456,7 @@ void draw_points(drawing *d)
     }
 }
 
-// A line with two heads from one x to another, with its label above.
+// Draws the figure's measure, a line with two arrow heads and a label above it.
 void draw_measure(drawing *d)
 {
     const figure_measure *m = d->fig->measure;
@@ -471,8 +479,9 @@ void draw_measure(drawing *d)
                  m->label);
 }
 
-// The label of a mark above the panels, whose line is at x in the first column; returns
-// where that line begins. A label before its line points to what begins there.
+// Draws the label of a mark above the panels, `shift` to the right of its place; x is its
+// line's in the first column. A label left of its line has an arrow towards what begins
+// there. Returns the upper end of the line.
 static double draw_flag(drawing *d, int index, double x, double shift)
 {
     const figure_mark *m = &d->fig->marks[index];
@@ -485,7 +494,8 @@ static double draw_flag(drawing *d, int index, double x, double shift)
     return row + 1;
 }
 
-// The marks of a column of panels, `shift` to the right of the first column.
+// Draws the marks of a column of panels, which lies `shift` to the right of the first:
+// the labels, and the lines from them down to the last panel.
 static void draw_column_marks(drawing *d, const plane *first, const plane *last,
                               double shift)
 {
@@ -508,7 +518,7 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
     }
 }
 
-// The hairlines of all marks, from their labels down through all panels.
+// Draws the marks of all columns of panels.
 void draw_marks(drawing *d)
 {
     for (int column = 0; column < d->columns; column++) {
@@ -521,7 +531,7 @@ void draw_marks(drawing *d)
     }
 }
 
-// Dashed lines across a panel, with their labels.
+// Draws the levels of a panel: dashed lines across it, with their labels.
 void draw_panel_levels(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
@@ -548,7 +558,7 @@ void draw_panel_levels(drawing *d, const panel_layout *l)
     }
 }
 
-// Dots with their texts.
+// Draws the notes of a panel: dots with their texts.
 void draw_notes(drawing *d, const panel_layout *l)
 {
     for (int i = 0; i < l->panel->note_count; i++) {
@@ -557,7 +567,6 @@ void draw_notes(drawing *d, const panel_layout *l)
             continue;
         }
 
-        // a dot and its text
         figure_rect place = note_place(d, l, n);
         draw_dot(d, &l->plane, n->x, n->y);
         draw_markup(d, n->text, d->style.tick, place.x, place.y, (anchor){0, 0});

@@ -14,14 +14,16 @@ static double pixel_x(const pane_frame *f, double time)
     return (time - f->from) / (f->to - f->from) * f->width;
 }
 
-// Kept near the pane: far outside cairo's numbers end.
+// The y of a value, limited to a pane's height above and below the pane: cairo's numbers
+// do not reach far.
 static double pixel_y(const pane_frame *f, double value)
 {
     const double y = (f->high - value) / (f->high - f->low) * f->height;
     return fmax(-f->height, fmin(2 * f->height, y));
 }
 
-// The pen of a curve: its pattern as lengths that are drawn and left out by turns.
+// Sets the pen of a curve. Its pattern, a bit for each piece, becomes the lengths that
+// cairo draws and leaves out in turn.
 static void set_curve_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
 {
     double lengths[PIECES];
@@ -34,7 +36,7 @@ static void set_curve_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
         lengths[count - 1] += c->piece;
     }
 
-    // no dashes make a whole line
+    // without dashes cairo draws a whole line
     if (c->pattern == whole_line) {
         count = 0;
     }
@@ -47,13 +49,12 @@ static void set_curve_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
 
 // What lies in one column of pixels.
 typedef struct pixel_column {
-    long at;
-    // y [pixels]: of the first and the last row, and the ends of what lies between
-    double first, low, high, last;
-    bool any;
+    long x;                        // of the column [pixels]
+    double first, low, high, last; // y of the first and last row, least and greatest y
+    bool any;                      // a row lies in it
 } pixel_column;
 
-// A further point of a column.
+// Takes a row's y into a column.
 static void add_to_column(pixel_column *c, double y)
 {
     if (c->any) {
@@ -66,10 +67,11 @@ static void add_to_column(pixel_column *c, double y)
     c->any = true;
 }
 
-// Joins a column to the line before it, through both its ends.
+// Continues the line through a column: from its first row over the least and greatest y
+// to its last row. Rows within half a pixel are one point.
 static void end_column(cairo_t *cr, const pixel_column *c)
 {
-    const double x = (double)c->at + 0.5;
+    const double x = (double)c->x + 0.5;
     if (!c->any) {
         return;
     }
@@ -81,30 +83,32 @@ static void end_column(cairo_t *cr, const pixel_column *c)
     }
 }
 
-// Many rows: column by column, whole blocks at once where they lie in one.
+// Traces a curve of many rows, column by column of pixels. c->pairs holds the least and
+// greatest value of each block of rows, so that a block within one column is taken at
+// once.
 static void trace_columns(cairo_t *cr, const pane_frame *f, const pane_curve *c,
                           double until)
 {
     const trace *t = c->rows;
-    pixel_column here = {.at = -1};
+    pixel_column column = {.x = -1};
     for (size_t r = trace_row_at(t, f->from);
          r < t->row_count && t->rows[r].time <= until;) {
-        const long at = lround(floor(pixel_x(f, t->rows[r].time)));
+        const long x = lround(floor(pixel_x(f, t->rows[r].time)));
         const size_t end = r + c->block;
-        if (at != here.at) {
-            end_column(cr, &here);
-            here = (pixel_column){.at = at};
+        if (x != column.x) {
+            end_column(cr, &column);
+            column = (pixel_column){.x = x};
         }
 
-        // a block that ends in the column in which it begins
+        // a whole block whose rows all lie in this column
         const bool whole = c->pairs != NULL && r % c->block == 0 && end < t->row_count &&
                            t->rows[end].time <= until &&
-                           lround(floor(pixel_x(f, t->rows[end].time))) == at;
+                           lround(floor(pixel_x(f, t->rows[end].time))) == x;
         if (whole) {
             const double *pair = &c->pairs[2 * (r / c->block)];
             if (pair[0] <= pair[1]) {
-                add_to_column(&here, pixel_y(f, pair[1]));
-                add_to_column(&here, pixel_y(f, pair[0]));
+                add_to_column(&column, pixel_y(f, pair[1]));
+                add_to_column(&column, pixel_y(f, pair[0]));
             }
             r = end - 1;
         }
@@ -112,18 +116,18 @@ static void trace_columns(cairo_t *cr, const pane_frame *f, const pane_curve *c,
         // the row itself, or the last of its block
         const double value = signal_value(&t->rows[r], c->signal);
         if (isfinite(value)) {
-            add_to_column(&here, pixel_y(f, value));
+            add_to_column(&column, pixel_y(f, value));
         } else {
-            end_column(cr, &here);
-            here.any = false;
+            end_column(cr, &column);
+            column.any = false;
             cairo_new_sub_path(cr);
         }
         r++;
     }
-    end_column(cr, &here);
+    end_column(cr, &column);
 }
 
-// Few rows: a point for each.
+// Traces a curve of few rows, with a point for each.
 static void trace_rows(cairo_t *cr, const pane_frame *f, const pane_curve *c,
                        double until)
 {
@@ -145,7 +149,8 @@ static void trace_rows(cairo_t *cr, const pane_frame *f, const pane_curve *c,
     }
 }
 
-// By columns of pixels where rows are many, else point by point.
+// Draws a curve, by columns of pixels where it has more than two rows for each column,
+// else row by row.
 void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
 {
     assert(f->to > f->from && f->high > f->low && f->width > 0 && f->height > 0);
@@ -163,7 +168,7 @@ void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
     cairo_stroke(cr);
 }
 
-// A straight line a pixel wide, of dots or not.
+// Draws a straight line a pixel wide, dotted or whole.
 static void hairline(cairo_t *cr, double x0, double y0, double x1, double y1, bool dotted,
                      colour in)
 {

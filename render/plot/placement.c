@@ -13,6 +13,7 @@ static int cell_row(const placement *g, double y)
     return (int)floor((y - g->box.y) / g->box.height * PLACEMENT_ROWS);
 }
 
+// Gives a cell of the grid at least a weight of ink.
 static void add_ink(placement *g, int row, int column, int weight)
 {
     if (row >= 0 && row < PLACEMENT_ROWS && column >= 0 && column < PLACEMENT_COLUMNS) {
@@ -20,7 +21,7 @@ static void add_ink(placement *g, int row, int column, int weight)
     }
 }
 
-// Marks the cells along a line, in steps of less than a cell.
+// Adds ink to the cells along a line, in steps of at most half a cell.
 void placement_line(placement *g, double x0, double y0, double x1, double y1, int weight)
 {
     double across = fabs(x1 - x0) / g->box.width * PLACEMENT_COLUMNS;
@@ -33,7 +34,7 @@ void placement_line(placement *g, double x0, double y0, double x1, double y1, in
     }
 }
 
-// Marks every cell that a rectangle touches.
+// Adds ink to every cell that a rectangle touches.
 void placement_block(placement *g, figure_rect r, int weight)
 {
     int last_row = cell_row(g, r.y + r.height),
@@ -45,7 +46,7 @@ void placement_block(placement *g, figure_rect r, int weight)
     }
 }
 
-// The sum over every cell that a rectangle touches.
+// The sum of the ink in all cells that a rectangle touches.
 double placement_ink(const placement *g, figure_rect r)
 {
     double sum = 0;

@@ -5,9 +5,9 @@
 #include "render/plot/drawing.h"
 
 #define MARKER_RADIUS 1.6
-#define RUN_WIDER     0.7 // of the runs that have a grey for the second or third time
-#define BUSY_WIDER    1.7
-#define RIM           0.8 // of the page's colour, at either side of what needs one
+#define RUN_WIDER     0.7 // growth of the width each time that all greys are used up
+#define BUSY_WIDER    1.7 // factor of a busy line's width
+#define RIM           0.8 // width of a rim in the page's colour, at either side
 
 // A line that turns up and down more often than this is busy: no pattern of dashes would
 // show [pt].
@@ -15,7 +15,7 @@
 #define MOST_TURNS    12   // of a line that is never busy
 #define BUSY_DISTANCE 16.0 // from turn to turn, some three dashes
 
-// Places in a panel for whose greys palette_series is asked.
+// Indices of greys in palette_series, and how many greys runs have.
 enum { DARKEST_GREY = 0, LIGHTEST_GREY = 4, GREYS = 3 };
 
 enum { STYLES = 4 };
@@ -28,11 +28,11 @@ static double series_width(const figure_series *s)
     return CURVE_WIDTH;
 }
 
-// The style of the series `index` among a panel's: its own, or the next that no earlier
-// one has.
+// The line style of series `index` of a panel: its own, or where an earlier series has
+// that one, the plainest that is free.
 static line_style untaken_style(const figure_series *series, int index)
 {
-    // the orders in which styles give way keep the lines as plain as possible
+    // styles from the plainest on
     static const line_style others[] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT,
                                         LINE_DOTTED};
 
@@ -42,7 +42,7 @@ static line_style untaken_style(const figure_series *series, int index)
         return LINE_DASHED;
     }
 
-    // each in its turn, from the panel's first to this one
+    // the styles that the series up to this one get, in turn
     for (int i = 0; i <= index; i++) {
         if (series[i].secondary) {
             continue;
@@ -65,8 +65,8 @@ typedef struct series_pen {
     double width; // [pt]
 } series_pen;
 
-// Of several runs: its style is the signal's and its colour the run's. Without colours
-// there are three greys, and further runs have wider lines.
+// The pen of a series of one of several runs: the signal decides the style, the run the
+// colour. Without colours there are three greys, and further runs have wider lines.
 static series_pen run_pen(const drawing *d, const figure_series *s)
 {
     const int rank = s->run - 1;
@@ -78,8 +78,8 @@ static series_pen run_pen(const drawing *d, const figure_series *s)
     return pen;
 }
 
-// Of a line in which no pattern shows; without colours the first such line of a panel is
-// lighter and wider.
+// The pen of a busy line, in which no pattern would show. Without colours the first busy
+// line of a panel is light and wide, the others are dark.
 static series_pen busy_pen(const drawing *d, const panel_layout *l, int index)
 {
     const figure_series *s = &l->panel->series[index];
@@ -89,6 +89,7 @@ static series_pen busy_pen(const drawing *d, const panel_layout *l, int index)
         return pen;
     }
 
+    // dark, unless it is the first busy line of the panel
     bool first = true;
     for (int i = 0; i < index; i++) {
         first = first && !l->busy[i];
@@ -101,7 +102,7 @@ static series_pen busy_pen(const drawing *d, const panel_layout *l, int index)
     return pen;
 }
 
-// The pen of a series by what it is: of a run, a busy line, or one of a few.
+// The pen of a series: of one of several runs, of a busy line, or of any other.
 static series_pen pen_of(const drawing *d, const panel_layout *l, int index)
 {
     const figure_series *s = &l->panel->series[index];
@@ -131,7 +132,7 @@ double set_series(const drawing *d, const panel_layout *l, int index)
 
 // ---- busy lines
 
-// What the pen does along a line.
+// The length of a line and its turns up and down, followed along the pen.
 typedef struct pen_path {
     double x, y, length; // [pt]
     double corner_y;     // where it last turned
@@ -139,7 +140,8 @@ typedef struct pen_path {
     bool up;
 } pen_path;
 
-// Counts the turns of a line and its length.
+// Adds a stroke to length and turns of a line (a stroke_sink). The line has turned where
+// it has left its last corner by LEAST_TURN in the other direction.
 static void follow_pen(void *context, stroke_kind kind, double x, double y)
 {
     pen_path *p = context;
@@ -173,8 +175,8 @@ bool series_is_busy(const plane *p, const figure_series *s)
 
 // ---- markers
 
-// The path of a marker at (x, y), of about one size in all kinds for one radius r: a
-// closed outline, or two lines that cross.
+// Adds the outline of a marker at (x, y) to the path, or two crossing lines. For one
+// radius r markers of all kinds look about equally large.
 static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double r)
 {
     cairo_new_path(cr);
@@ -216,7 +218,8 @@ static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double
     }
 }
 
-// A marker in the series' colour; one with a shade has that inside and an outline.
+// Draws a marker: filled in the series' colour, or where the series has shades, filled
+// with the point's shade and outlined.
 static void draw_marker(const drawing *d, const panel_layout *l, const figure_series *s,
                         double x, double y, double shade)
 {
@@ -231,7 +234,7 @@ static void draw_marker(const drawing *d, const panel_layout *l, const figure_se
         return;
     }
 
-    // inside the shade, outside a rim and an outline
+    // the shade inside
     cairo_save(d->cr);
     cairo_set_dash(d->cr, NULL, 0, 0);
     if (isfinite(shade) && l != NULL) {
@@ -239,6 +242,7 @@ static void draw_marker(const drawing *d, const panel_layout *l, const figure_se
         cairo_fill_preserve(d->cr);
     }
 
+    // the outline, over a map with a rim round it
     if (s->rim) {
         set_colour(d->cr, palette_of(THEME_COLOUR)->page);
         cairo_set_line_width(d->cr, CURVE_WIDTH + 2 * RIM);
@@ -275,7 +279,7 @@ static void stroke(void *context, stroke_kind kind, double x, double y)
     }
 }
 
-// The line of a series, cut at the panel's edge.
+// Draws the line of a series, clipped at the panel's edge.
 static void draw_series_line(const drawing *d, const panel_layout *l, const plane *p,
                              int index)
 {
@@ -283,7 +287,7 @@ static void draw_series_line(const drawing *d, const panel_layout *l, const plan
     const double width = set_series(d, l, index);
     stroke_context context = {.cr = d->cr, .radius = 0.75 * width};
 
-    // a line along the upper or lower end keeps its width, none begins left of the axis
+    // clipped a little beyond the upper and lower edges, where a line keeps its width
     const figure_rect page = {p->box.x, p->box.y - 1, p->box.width, p->box.height + 2};
     cairo_save(d->cr);
     clip_to(d->cr, &page);
@@ -302,7 +306,7 @@ static void draw_series_line(const drawing *d, const panel_layout *l, const plan
     cairo_restore(d->cr);
 }
 
-// The markers of a series that lie in the panel, not cut at its edge.
+// Draws the markers of a series whose points lie in the panel; they are not clipped.
 static void draw_markers(const drawing *d, const panel_layout *l, const plane *p,
                          int index)
 {
@@ -318,7 +322,7 @@ static void draw_markers(const drawing *d, const panel_layout *l, const plane *p
     }
 }
 
-// Series by series, so that later ones lie over earlier ones.
+// Draws the series of a panel, later ones over earlier ones.
 void draw_series(const drawing *d, const panel_layout *l, const plane *p)
 {
     cairo_save(d->cr);
@@ -334,7 +338,8 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
     cairo_restore(d->cr);
 }
 
-// A short piece of its line with a marker in the middle.
+// Draws the sample of a series for a legend: a piece of its line with a marker in the
+// middle.
 void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double y)
 {
     const figure_series *s = &l->panel->series[index];
@@ -356,7 +361,7 @@ void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double 
 #define LEAST_ARROW   4.0
 #define LONGEST_ARROW (STRIP_HEIGHT - 3)
 
-// An arrow upwards; its line ends within its head.
+// Draws an arrow upwards from a base line; its line ends within its head.
 static void draw_upward_arrow(cairo_t *cr, double x, double base, double length)
 {
     const double head = fmin(LEAST_ARROW, length), half_width = 0.36 * head;
@@ -381,7 +386,8 @@ static double largest_impulse(const figure_panel *panel)
     return largest;
 }
 
-// Small impulses are given in units of a power of ten.
+// The power of ten in whose units the impulses of a panel are given; 0 unless they are
+// small.
 static int impulse_exponent(const figure_panel *panel)
 {
     double largest = largest_impulse(panel);
@@ -412,7 +418,7 @@ static bool strip_is_free(const drawing *d, const panel_layout *l,
         return false;
     }
 
-    // what crosses it from above
+    // arrows of other impulses and lines of marks that would cross it
     for (int i = 0; i < l->panel->impulse_count; i++) {
         const double arrow = plane_x(&l->plane, l->panel->impulses[i].x);
         if (i != index && arrow >= left && arrow <= right) {
@@ -472,7 +478,7 @@ static int next_impulse(const drawing *d, const figure_panel *panel, int last)
         most = fabs(all[last].size);
     }
 
-    // of those that are not larger the largest
+    // the largest of those that come after it in this order
     for (int i = 0; i < panel->impulse_count; i++) {
         const double size = fabs(all[i].size);
         const bool left = size < most || (size == most && i > last);
@@ -484,7 +490,7 @@ static int next_impulse(const drawing *d, const figure_panel *panel, int last)
     return next;
 }
 
-// Labels go to the largest impulses first.
+// Labels the impulses, the largest first, as long as there is room.
 static void label_impulses(drawing *d, const panel_layout *l, double base)
 {
     figure_rect taken[IMPULSES_LABELLED];
@@ -495,7 +501,8 @@ static void label_impulses(drawing *d, const panel_layout *l, double base)
     }
 }
 
-// A base line with an arrow for each impulse, their sizes, and what they are.
+// Draws the strip of impulses above a panel: a base line, an arrow with its size for each
+// impulse, and the strip's label.
 void draw_impulses(drawing *d, const panel_layout *l)
 {
     const figure_panel *panel = l->panel;

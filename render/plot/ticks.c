@@ -9,7 +9,7 @@
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 
-// the nice numbers, nicest first; each is tenths / 10
+// the nice numbers 1, 5, 2, 2.5, 4, 3 in tenths, nicest first
 static const int nice_tenths[] = {10, 50, 20, 25, 40, 30};
 enum { NICE = 6 };
 static const double weight_simplicity = 0.25, weight_coverage = 0.2, weight_density = 0.5,
@@ -28,12 +28,14 @@ typedef struct tick_request {
     int count;
 } tick_request;
 
+// The number of which all ticks are multiples, nice 10^power.
 static double step_unit(const labelling *l)
 {
     return 0.1 * nice_tenths[l->nice] * pow(10, l->power);
 }
 
-// Number times nice times a power of ten, rounded once.
+// number nice 10^power, by whole numbers and a single division or multiplication so that
+// it is rounded once.
 static double tick_value(const labelling *l, double number)
 {
     double whole = number * nice_tenths[l->nice];
@@ -44,13 +46,15 @@ static double tick_value(const labelling *l, double number)
     return whole * pow(10, power);
 }
 
+// The score of a labelling, the weighted sum of its parts.
 static double combined(double simplicity, double coverage, double density)
 {
     return weight_simplicity * simplicity + weight_coverage * coverage +
            weight_density * density + weight_legibility;
 }
 
-// Early in the list, few skipped, and 0 among the ticks.
+// Score for a simple labelling: its number early in the list, few multiples left out
+// (small j), and 0 among the ticks.
 static double simplicity(const labelling *l)
 {
     double last = l->start + (double)(l->count - 1) * l->j;
@@ -61,17 +65,20 @@ static double simplicity(const labelling *l)
     return score;
 }
 
+// The greatest simplicity that any start and power can have.
 static double simplicity_most(int nice, int j)
 {
     return 2 - (double)nice / (NICE - 1) - j;
 }
 
+// Score for ticks whose first and last are near the ends of the axis.
 static double coverage(double low, double high, double first, double last)
 {
     double tenth = 0.1 * (high - low);
     return 1 - 0.5 * (pow(high - last, 2) + pow(low - first, 2)) / (tenth * tenth);
 }
 
+// The greatest coverage of ticks that span a length: with the axis in their middle.
 static double coverage_most(double low, double high, double span)
 {
     double range = high - low, half = (span - range) / 2;
@@ -81,6 +88,7 @@ static double coverage_most(double low, double high, double span)
     return 1;
 }
 
+// Score for a number of ticks per length that is near the wanted one.
 static double density(int count, int wanted, double low, double high, double first,
                       double last)
 {
@@ -89,6 +97,7 @@ static double density(int count, int wanted, double low, double high, double fir
     return 2 - fmax(have / want, want / have);
 }
 
+// The greatest density score that a number of ticks can have.
 static double density_most(int count, int wanted)
 {
     if (count >= wanted) {
@@ -97,7 +106,8 @@ static double density_most(int count, int wanted)
     return 1;
 }
 
-// Tries every start for the given step and count.
+// Scores every start for the step and count of a labelling, and keeps the best that lies
+// within the axis.
 static void try_starts(labelling l, const tick_request *w, labelling *best)
 {
     double unit = step_unit(&l), step = unit * l.j;
@@ -105,7 +115,7 @@ static void try_starts(labelling l, const tick_request *w, labelling *best)
            to = ceil(w->low / step) * l.j;
     double slack = 1e-9 * (w->high - w->low);
 
-    // only whole multiples of the step: 0.04, 0.05 and never 0.045, 0.055
+    // starts are multiples of the step only: 0.04, 0.05 and never 0.045, 0.055
     for (l.start = from; l.start <= to; l.start += l.j) {
         double first = l.start * unit, last = first + step * (l.count - 1);
         l.score = combined(simplicity(&l), coverage(w->low, w->high, first, last),
@@ -116,13 +126,14 @@ static void try_starts(labelling l, const tick_request *w, labelling *best)
     }
 }
 
-// Tries the powers of ten, from the one that just spans the data upwards.
+// Tries the powers of ten for a nice number and count, from the one that just spans the
+// axis upwards.
 static void try_powers(labelling l, const tick_request *w, labelling *best)
 {
     double nice = 0.1 * nice_tenths[l.nice];
     l.power = (int)ceil(log10((w->high - w->low) / (l.count + 1) / l.j / nice));
 
-    // until not even the best of this power could win
+    // ends where not even the greatest score of this power could win
     for (;; l.power++) {
         double span = l.j * step_unit(&l) * (l.count - 1);
         double most =
@@ -135,12 +146,13 @@ static void try_powers(labelling l, const tick_request *w, labelling *best)
     }
 }
 
-// The labelling with the best score, by a search that ends where no other could win.
+// The labelling with the best score. The search goes through j, nice number, count, power
+// and start, and ends each loop where the greatest score left is below the best so far.
 static labelling best_labelling(const tick_request *w)
 {
     labelling best = {.score = -100}; // below any that lies within the axis
 
-    // ever rarer multiples of the nice numbers, while one could still win
+    // every j-th multiple of the nice numbers
     for (int j = 1;; j++) {
         for (int nice = 0; nice < NICE; nice++) {
             double simple = simplicity_most(nice, j);
@@ -161,7 +173,7 @@ static int decimals_needed(const ticks *t)
 {
     double unit = pow(10, t->exponent);
 
-    // the first number of digits that leaves nothing behind
+    // the least number of digits at which all values are whole
     for (int decimals = 0; decimals < 15; decimals++) {
         bool enough = true;
         for (int i = 0; i < t->count && enough; i++) {
@@ -175,10 +187,11 @@ static int decimals_needed(const ticks *t)
     return 15;
 }
 
-// limit that has labels: steps of ten have their powers without overflow
+// greatest limit that gets ticks, so that no power of ten overflows
 #define FARTHEST 1e100
 
-// Puts the limits in order and apart; false if they are no numbers, or too large ones.
+// Orders the limits of an axis, separates equal ones, and limits the wanted count. False
+// if a limit is not a number or too large.
 static bool order_limits(tick_request *w)
 {
     if (!(fabs(w->low) <= FARTHEST && fabs(w->high) <= FARTHEST)) {
@@ -206,11 +219,13 @@ static bool order_limits(tick_request *w)
     return true;
 }
 
-// Values of all ticks: those of a labelling, and every other multiple of its step on the
+// Fills in the values of all ticks: all multiples of the labelling's step that lie on the
 // axis.
 static void fill_values(ticks *t, const labelling *best, const tick_request *w)
 {
     const double unit = step_unit(best), slack = 1e-9 * (w->high - w->low);
+
+    // the first multiple on the axis, and how many there are from it on
     double first = best->start;
     while ((first - best->j) * unit >= w->low - slack) {
         first -= best->j;
@@ -231,7 +246,7 @@ static void fill_values(ticks *t, const labelling *best, const tick_request *w)
     }
 }
 
-// The power of ten by which labels are divided: long rows of zeros go into a factor.
+// The power of ten by which labels are divided where they would have many zeros; 0: none.
 static int label_exponent(const ticks *t)
 {
     double largest = 0;
@@ -244,7 +259,8 @@ static int label_exponent(const ticks *t)
     return 0;
 }
 
-// The best labelling's values, with what their labels need.
+// Chooses the ticks of an axis: their values, minor ticks, and the exponent and decimals
+// of their labels.
 void ticks_between(ticks *t, double low, double high, int wanted)
 {
     tick_request w = {low, high, wanted};
