@@ -14,14 +14,15 @@ static arm_shape shape_of(const sample *row)
     return (arm_shape){row->first_angle, row->last_angle, row->force, row->time};
 }
 
-// ---- what both draw
+// ---- what the diagrams of the arm's shape share
 
-// Positions of hub, joint and tip on the page, in a view in which `base` is the direction
-// to the right.
+// Positions of hub, joint and tip on the page.
 typedef struct arm_places {
     point hub, joint, end;
 } arm_places;
 
+// The positions of a shape of the arm, in a view in which the direction with the angle
+// `base` points to the right.
 static arm_places places_of(const view *v, const diagram *d, arm_shape a, double base)
 {
     double l = d->p.arm.length / 2;
@@ -43,6 +44,7 @@ static void draw_dashed_arm(const sketch *s, arm_places a, int slot)
     sketch_disc(s, a.joint, 2, slot, true);
 }
 
+// Draws the arm with its hub, its joint and both links as bars.
 static void draw_full_arm(const sketch *s, arm_places a)
 {
     sketch_bar(s, a.hub, a.joint, 5);
@@ -52,17 +54,20 @@ static void draw_full_arm(const sketch *s, arm_places a)
     sketch_disc(s, a.hub, 2, SKETCH_INK, true);
 }
 
-// Wall and contact force at a place, across a link that has the given direction on the
-// page.
+// Draws the wall and the contact force at a place of a link; the force is at right angles
+// to the link's direction on the page.
 static void draw_contact_force(sketch *s, point at, double direction, const char *symbol,
                                double force)
 {
     g_autofree char *quantity = text_quantity(force, 3, "N");
-    double ux = cos(direction), uy = -sin(direction), nx = -sin(direction),
-           ny = -cos(direction);
+
+    // unit vectors on the page along the link and across it
+    double ux = cos(direction), uy = -sin(direction);
+    double nx = -sin(direction), ny = -cos(direction);
     point wall = {at.x + 4 * nx, at.y + 4 * ny};
     sketch_wall(s, shifted(wall, 16 * ux, 16 * uy), shifted(wall, -16 * ux, -16 * uy));
 
+    // the arrow ends at the link, its label is at its beginning
     point start = {at.x + (FORCE_LENGTH + 4) * nx, at.y + (FORCE_LENGTH + 4) * ny};
     sketch_arrow(s, start, shifted(at, 4 * nx, 4 * ny), SLOT_VERMILLION);
     sketch_label(s, shifted(start, 4 * nx, 4 * ny), (anchor){0.5, 1}, "%s = %s", symbol,
@@ -71,13 +76,13 @@ static void draw_contact_force(sketch *s, point at, double direction, const char
 
 // ---- 3.1: two successive steps
 
-// The reference line from the hub, and the coordinates a and b of the contact point over
-// its foot on that line.
+// Draws the reference line from the hub, and the contact point's coordinates: a along the
+// line to the foot of the perpendicular, b from there to the point.
 static void draw_coordinates(sketch *s, point hub, point foot, point contact)
 {
-    const double beyond = 46; // of the dashed lines behind the point
-    sketch_dashed(s, hub, shifted(foot, beyond, 0), SKETCH_FAINT);
-    sketch_dashed(s, contact, shifted(contact, beyond, 0), SKETCH_FAINT);
+    const double extension = 46; // of the dashed lines past the point [pt]
+    sketch_dashed(s, hub, shifted(foot, extension, 0), SKETCH_FAINT);
+    sketch_dashed(s, contact, shifted(contact, extension, 0), SKETCH_FAINT);
 
     sketch_measure(s, (point){hub.x, foot.y + 16}, shifted(foot, 0, 16));
     sketch_label(s, (point){(hub.x + foot.x) / 2, foot.y + 18}, (anchor){0.5, 0},
@@ -88,7 +93,7 @@ static void draw_coordinates(sketch *s, point hub, point foot, point contact)
     sketch_label(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)");
 }
 
-// Which shape is which, at the page's upper left corner.
+// Draws the key at the page's upper left corner: which instant each shape is of.
 static void draw_shape_key(sketch *s, const arm_shapes *of)
 {
     const point full = {s->left + 4, s->top + 14}, dashed = shifted(full, 0, 14);
@@ -101,14 +106,14 @@ static void draw_shape_key(sketch *s, const arm_shapes *of)
                  "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
 }
 
-// The name of a link's length, `left` and `up` from its middle.
+// Writes the name of a link's length, `left` and `up` from the link's middle.
 static void label_length(sketch *s, point from, point to, double left, double up)
 {
     const point middle = {(from.x + to.x) / 2, (from.y + to.y) / 2};
     sketch_label(s, shifted(middle, -left, -up), (anchor){1, 1}, "<i>l</i>");
 }
 
-// The arm at two successive steps over the reference line.
+// Draws the arm at two successive steps over the reference line.
 static void draw_contact_diagram(sketch *s, const diagram *d)
 {
     const arm_shapes *of = &d->shapes;
@@ -158,7 +163,7 @@ static void add_shape_values(diagram *d, const arm_shape *a)
     diagram_add_value(d, "force f", a->force, "N");
 }
 
-// Figure 3.1.
+// Makes figure 3.1: the arm in contact at two successive steps.
 status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d =
@@ -200,7 +205,8 @@ status diagram_contact(const figure_order *order, artwork *out, fault *f)
 
 // ---- 4.6: the largest deformation
 
-// The arm at its peak force, at first contact, and as the energy principle has it.
+// Draws the arm at its peak force, at first contact, and as the energy principle predicts
+// it.
 static void draw_deformation(sketch *s, const diagram *d)
 {
     const arm_shapes *of = &d->shapes;
@@ -236,7 +242,7 @@ static void draw_deformation(sketch *s, const diagram *d)
                  "at first contact");
 }
 
-// The row nearest to an instant.
+// The row whose time is nearest to an instant [s].
 static const sample *row_at(const trace *t, double time)
 {
     const sample *best = &t->rows[0];
@@ -248,7 +254,7 @@ static const sample *row_at(const trace *t, double time)
     return best;
 }
 
-// The last row before the impact's jump.
+// The last row before the impact at the time `contact` makes the velocities jump.
 static const sample *row_before(const trace *t, double contact)
 {
     const sample *before = &t->rows[0];
@@ -260,7 +266,7 @@ static const sample *row_before(const trace *t, double contact)
     return before;
 }
 
-// Figure 4.6.
+// Makes figure 4.6: the arm at its largest deformation.
 status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d = diagram_create(order, NULL, 148, draw_deformation, f);
@@ -311,8 +317,8 @@ status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 #define BODY_LENGTH    220.0 // of the cut body on the page [pt]
 #define BODY_HEIGHT    116.0 // of the space that it has [pt]
 
-// The last body at the impact: what (4.3)-(4.5) say of it. Vectors are given by their
-// part across the body, to the left of the way from its hinge to its end.
+// The last body at the impact, by (4.3)-(4.5). Vectors are given by their component
+// across the body, positive to the left as seen from the hinge towards the end.
 typedef struct cut_body {
     double mass, inertia; // m [kg], J about its centre of mass [kg m2]
     double half, rho; // from the centre to the hinge, and to the point of collision [m]
@@ -324,7 +330,13 @@ typedef struct cut_body {
     double point_jump;    // of the point of collision's velocity [m/s]
 } cut_body;
 
-// Cuts the last link free: X from (4.3), Y from (4.4), the point of collision from (4.5).
+// Computes the impulses on the last link cut free:
+//
+//     X = m dv - F           (4.3)
+//     Y = J domega - rho F   (4.4)
+//
+// with the jumps of its centre's velocity and of its angular velocity. The point of
+// collision's velocity jumps by dv + rho domega, (4.5).
 static cut_body cut_last_body(const diagram *d)
 {
     double l = d->p.arm.length / 2, length = d->p.arm.length, wall = d->p.wall.angle;
@@ -345,7 +357,8 @@ static cut_body cut_last_body(const diagram *d)
     return b;
 }
 
-// "X = −0.0123 N·s" with three digits.
+// Writes "X = −0.0123 N·s" with three digits; ax anchors it left (0), middle or right
+// (1).
 static void put_value(sketch *s, point at, double ax, const char *symbol, double value,
                       const char *unit)
 {
@@ -353,8 +366,8 @@ static void put_value(sketch *s, point at, double ax, const char *symbol, double
     sketch_small(s, at, (anchor){ax, 0.5}, "%s = %s\u2009%s", symbol, number, shown);
 }
 
-// Velocities of the joint [m/s]: before the impact to the left of it, after it to the
-// right.
+// Draws the joint's velocities [m/s]: left of it that before the impact, right of it that
+// after it.
 static void draw_joint_velocities(sketch *s, point joint, double before, double after)
 {
     const double beside = 6, above = joint.y - 6;
@@ -366,7 +379,7 @@ static void draw_joint_velocities(sketch *s, point joint, double before, double 
     sketch_small(s, shifted(right, 6, -4), (anchor){0, 1}, "after\n%.3f\u2009m/s", after);
 }
 
-// The tip arrives at a speed [m/s] and is stopped by the wall's impulse [N s].
+// Draws how the tip arrives at a speed [m/s] and is stopped by the wall's impulse [N s].
 static void draw_tip_stop(sketch *s, point contact, double speed, double impulse)
 {
     const point below = shifted(contact, -8, 6), above = shifted(contact, 0, -50);
@@ -378,7 +391,7 @@ static void draw_tip_stop(sketch *s, point contact, double speed, double impulse
                  impulse);
 }
 
-// The whole arm, its hinge to the last body cut.
+// Draws the whole arm at the impact, and where its last body is cut free.
 static void draw_hitting_arm(sketch *s, const diagram *d)
 {
     const double l = d->p.arm.length / 2, wall = d->p.wall.angle;
@@ -399,7 +412,7 @@ static void draw_hitting_arm(sketch *s, const diagram *d)
     sketch_small(s, shifted(hub, 0, 18), (anchor){0.5, 0}, "hub");
     sketch_small(s, shifted(contact, 8, 4), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)");
 
-    // how their ends move
+    // how joint and tip move
     const double joint_before = l * d->before.velocity[1];
     draw_joint_velocities(s, joint, joint_before, l * d->after[1]);
     draw_tip_stop(s, contact, joint_before + l * d->before.velocity[2], d->impulse);
@@ -418,7 +431,7 @@ static arc turning_arc(point centre, double radius, double low, double high, dou
     return (arc){centre, radius, low, high, true};
 }
 
-// The last body on its own, along the page.
+// Draws the last body on its own, with the impulses on it and the jumps that they make.
 static void draw_cut_body(sketch *s, const diagram *d)
 {
     const cut_body b = cut_last_body(d);
@@ -476,7 +489,7 @@ static void draw_collision(sketch *s, const diagram *d)
     draw_cut_body(s, d);
 }
 
-// Figure 4.2.
+// Makes figure 4.2: the collision.
 status diagram_collision(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d =

@@ -17,7 +17,7 @@ typedef struct multiples {
     int count;
 } multiples;
 
-// The list of values.
+// Reads the list of values of the parameter.
 static void read_multiple_values(recipe_context *c, const tree_node *node, void *into)
 {
     multiples *m = into;
@@ -27,7 +27,7 @@ static void read_multiple_values(recipe_context *c, const tree_node *node, void 
         return;
     }
 
-    // as texts, so that a heading can show them the way they were written
+    // they are kept as texts, so that headings show them as they were written
     for (const tree_node *item = node->first; item != NULL; item = item->next) {
         if (m->count == MULTIPLES_MOST) {
             report_node(&c->reader, item, "there are more than %d values",
@@ -41,7 +41,8 @@ static void read_multiple_values(recipe_context *c, const tree_node *node, void 
     }
 }
 
-// "1 V" of a value with its unit, or of a bare number with the parameter's.
+// The heading of a value such as "1 V": as it is written if it has a unit, else with the
+// parameter's unit, or if that has none, with the parameter's name.
 static const char *heading_of(recipe_context *c, const multiples *m, int index)
 {
     const parameter_info *info = &parameter_table[parameter_find(m->parameter)];

@@ -8,8 +8,8 @@
 
 G_LOCK_DEFINE_STATIC(tables);
 
-// Computing the tables takes a while, and six pages want them, perhaps on several
-// threads.
+// The thesis's tables, computed at the first call. Six pages use them, perhaps on several
+// threads, and computing them takes a while. NULL, with a fault, if they cannot be.
 const thesis_tables *computed_tables(fault *f)
 {
     static thesis_tables tables;
@@ -42,6 +42,7 @@ const table_row *computed_row(const thesis_tables *t, const char *table,
 
 // ==== pages
 
+// Makes a page with an empty table, with the title and the look of an order.
 static table_page *new_table(const figure_order *order, const table_column *columns,
                              size_t count)
 {
@@ -93,7 +94,7 @@ static char *used_value(const parameters *p, const parameter_info *info)
     return text_printf("%.6g\u2009%s", value, sign);
 }
 
-// Table 2.1.
+// Makes table 2.1: the constants of the motor.
 status table_motor(const figure_order *order, artwork *out, fault *f)
 {
     static const table_column columns[] = {{"Symbol", 0.75},
@@ -131,7 +132,8 @@ status table_motor(const figure_order *order, artwork *out, fault *f)
 
 // ---- 3.1: stability
 
-// One pair (beta, gamma): where it stands in the table and what it means for this arm.
+// Adds the row of a pair (beta, gamma). It is stable at any step if 2 beta >= gamma, else
+// for w h up to 1/sqrt(gamma/2 - beta); `fastest` is the arm's highest w [rad/s].
 static void add_pair(table_page *t, const char *name, double beta, double gamma,
                      double fastest)
 {
@@ -170,7 +172,7 @@ static status find_fastest_mode(double *fastest, fault *f)
     return STATUS_OK;
 }
 
-// Table 3.1.
+// Makes table 3.1: the stability of Newmark's method.
 status table_stability(const figure_order *order, artwork *out, fault *f)
 {
     double fastest = 0;

@@ -18,11 +18,13 @@
 #define Y_TICK       20.0 // of a vertical axis
 #define DECADE_TICK  14.0 // of a logarithmic vertical axis
 #define COLUMN_WIDTH 42.0 // least width of a column of panels [mm]
-#define FIRST_LEFT   40.0 // where the panels begin before anything is known
+// first guess of where the panels begin, before labels are measured [pt]
+#define FIRST_LEFT 40.0
 
 // ---- ranges
 
-// The range of the data and a share of it round them.
+// Widens the range of the data by a share of it at both ends. Fails for a logarithmic
+// axis without data above zero.
 static status widen_range(axis_scale *s, double share, const figure_axis *from, fault *f)
 {
     FAULT_IF(s->kind == SCALE_LOGARITHMIC && scale_is_empty(s), f, STATUS_BAD_ARGUMENT,
@@ -32,7 +34,7 @@ static status widen_range(axis_scale *s, double share, const figure_axis *from, 
     return STATUS_OK;
 }
 
-// The ends of the horizontal axis: given ones, or from the data of all panels.
+// Chooses the range of the horizontal axis: the given one, or that of all panels' data.
 static status choose_x_range(drawing *d, fault *f)
 {
     const figure *fig = d->fig;
@@ -58,7 +60,7 @@ static status choose_x_range(drawing *d, fault *f)
     return widen_range(x, fig->x.room, &fig->x, f);
 }
 
-// The labels of peaks stand above their points.
+// Extends a vertical axis so that labels of marks have room above their points.
 static void include_peak_labels(const figure *fig, axis_scale *y)
 {
     for (int i = 0; i < fig->mark_count; i++) {
@@ -68,8 +70,8 @@ static void include_peak_labels(const figure *fig, axis_scale *y)
     }
 }
 
-// The ends of a panel's vertical axis: given ones, or from the data that the
-// horizontal one shows.
+// Chooses the range of a panel's vertical axis: the given one, or that of the data within
+// the range of the horizontal axis.
 static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
 {
     const figure_panel *panel = l->panel;

@@ -6,12 +6,15 @@
 #include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
 
-// Finds where the level crosses the sides and joins the crossings in pairs.
+// The pieces of a contour line within a square whose corners have the values z: finds
+// where the level crosses the sides, by linear interpolation, and joins the crossings in
+// pairs. Returns the number of pieces.
 int contour_square(const double z[4], double level, contour_piece pieces[2])
 {
     assert(isfinite(level));
-    // corners in the order of going round, and the crossing of the side that begins at
-    // each
+
+    // the corners counterclockwise; side i begins at corner i and is crossed at
+    // cross_x[i], cross_y[i]
     static const int corner[4] = {0, 1, 3, 2};
     static const double corner_x[4] = {0, 1, 1, 0}, corner_y[4] = {0, 0, 1, 1};
     double cross_x[4] = {0}, cross_y[4] = {0};
@@ -34,7 +37,8 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
         }
     }
 
-    // four crossings: the pieces cut off the corners that differ from the middle
+    // With four crossings each piece cuts off a corner on the other side of the level
+    // than the middle
     bool middle = (z[0] + z[1] + z[2] + z[3]) / 4 >= level;
     int first = 0;
     if (count == 4 && (z[0] >= level) != middle) {
@@ -56,8 +60,8 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
 
 // ---- scales
 
-// The border between points i - 1 and i in coordinates; i = 0 and i = count are the outer
-// ends.
+// The border between the cells of points i - 1 and i, in coordinates of the scale; i = 0
+// and i = count are the outer borders.
 static double cell_edge(scale_kind kind, const double *points, size_t count, size_t i)
 {
     // a single point has a cell of width 1
@@ -68,8 +72,8 @@ static double cell_edge(scale_kind kind, const double *points, size_t count, siz
         return scale_coordinate(kind, points[0]) + 0.5;
     }
 
-    // the middle between neighbours; the outer ends are as far from the last points as
-    // the borders
+    // the middle between two neighbours; an outer border is as far from the last point as
+    // the border on its other side
     const size_t k = CLAMP(i, 1, count - 1);
     double before = scale_coordinate(kind, points[k - 1]);
     double after = scale_coordinate(kind, points[k]);
@@ -95,7 +99,7 @@ void map_include(const figure_map *map, axis_scale *x, axis_scale *y)
     include_edges(y, map->y, map->rows);
 }
 
-// The ends of the colours: given ones, or from all cells and markers.
+// Chooses the range of the colour scale: the given one, or that of all cells and markers.
 void map_choose_scale(panel_layout *l)
 {
     const figure_panel *panel = l->panel;
@@ -121,6 +125,7 @@ void map_choose_scale(panel_layout *l)
 
 // ---- cells
 
+// The share of the colour scale at which a value lies, limited to 0 to 1.
 static double shade_share(const panel_layout *l, double value)
 {
     double share = fmin(1, fmax(0, scale_share(&l->colours.scale, value)));
@@ -135,7 +140,7 @@ void set_shade(const drawing *d, const panel_layout *l, double value)
     set_colour(d->cr, palette_shade(d->style.theme, shade_share(l, value)));
 }
 
-// Grey with hatching: a cell without a value.
+// Fills a cell without a value: grey with hatching.
 static void fill_missing(const drawing *d, const figure_rect *r)
 {
     cairo_save(d->cr);
@@ -145,9 +150,9 @@ static void fill_missing(const drawing *d, const figure_rect *r)
     cairo_paint(d->cr);
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
 
-    // hatched
+    // the hatching's lines, x + y = constant, are at fixed places of the page, so that
+    // they continue from cell to cell
     set_plain_line(d->cr, d->style.colours->mark, GRID_WIDTH);
-    // lines at fixed places of the page, so that they run on from cell to cell
     double from = floor((r->x + r->y) / HATCH) * HATCH,
            to = r->x + r->width + r->y + r->height;
     for (double sum = from; sum <= to; sum += HATCH) {
@@ -156,7 +161,7 @@ static void fill_missing(const drawing *d, const figure_rect *r)
     cairo_restore(d->cr);
 }
 
-// Where a coordinate lies on the page.
+// Where a coordinate of a scale lies on the page [pt].
 static double page_x(const plane *p, double at)
 {
     return p->box.x + p->box.width * (at - p->x.low) / (p->x.high - p->x.low);
@@ -167,13 +172,15 @@ static double page_y(const plane *p, double at)
     return p->box.y + p->box.height * (p->y.high - at) / (p->y.high - p->y.low);
 }
 
-// A rectangle in its colour for each cell.
+// Draws each cell of a map as a rectangle in its colour.
 static void draw_cells(const drawing *d, const panel_layout *l)
 {
     const figure_map *map = l->panel->map;
     const plane *p = &l->plane;
-    // neighbours would show a hairline between them if edges were smoothed, or if a
-    // viewer smooths them: every cell reaches a little under its later neighbours
+
+    // Smoothed edges would leave a hairline between neighbours. They are not smoothed
+    // here, and in case a viewer smooths them every cell extends a little under later
+    // neighbours
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_NONE);
 
     // column by column
@@ -198,7 +205,8 @@ static void draw_cells(const drawing *d, const panel_layout *l)
 
 // ---- contour lines
 
-// White on the dark half of the colours, black on the bright one.
+// Sets the pen of a level's contour line: white over dark colours, black over bright
+// ones.
 static void set_contour_line(const drawing *d, const panel_layout *l, double level)
 {
     bool dark = shade_share(l, level) < BRIGHT;
@@ -206,7 +214,7 @@ static void set_contour_line(const drawing *d, const panel_layout *l, double lev
     cairo_set_source_rgba(d->cr, dark, dark, dark, 0.85);
 }
 
-// The contour line of a level, square by square.
+// Draws the contour line of a level, square by square.
 static void draw_contour(const drawing *d, const panel_layout *l, double level)
 {
     const figure_map *map = l->panel->map;
@@ -232,7 +240,7 @@ static void draw_contour(const drawing *d, const panel_layout *l, double level)
     cairo_stroke(d->cr);
 }
 
-// Cells, and contour lines over them.
+// Draws the map of a panel: its cells, and contour lines over them.
 void draw_panel_map(drawing *d, const panel_layout *l)
 {
     const figure_map *map = l->panel->map;
@@ -269,7 +277,8 @@ double colour_bar_width(const drawing *d, const panel_layout *l)
            axis_title_height(d, &l->colours, l->plane.box.height);
 }
 
-// The colours as stripes that reach to the top, so that no gap is left between them.
+// Fills the bar with the colours from bottom to top. Each stripe reaches to the top,
+// under the later ones, so that no gap is left between them.
 static void fill_bar(const drawing *d, const panel_layout *l, const figure_rect *bar)
 {
     enum { STRIPES = 256 };
@@ -286,7 +295,7 @@ static void fill_bar(const drawing *d, const panel_layout *l, const figure_rect 
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
 }
 
-// The colours as a bar at the right of the panel, with ticks and a title.
+// Draws the colour bar at the right of the panel, with ticks and a title.
 void draw_colour_bar(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;

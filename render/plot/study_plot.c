@@ -12,7 +12,8 @@
 
 // ==== robust: the distribution of the overshoot
 
-// For each law the share of runs over the overshoot that they stay below.
+// Makes the figure of a study of robustness: for each law the share of the runs that have
+// at most an overshoot, over that overshoot.
 owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
     assert(t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
@@ -21,8 +22,8 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
                             "%s: overshoot of control laws under uncertain parameters%s",
                             t->scenario, changes);
 
-    // a curve for each law: of the same runs, run i of n, in the order of their
-    // overshoots, is at (i + 1)/n
+    // a curve for each law: the runs are in the order of their overshoots, so that the
+    // share at run k of n is (k + 1)/n
     for (int i = 0; i < t->count; i++) {
         const robust_law *law = &t->laws[i];
         double *share = owned_figure_numbers(o, law->runs);
@@ -54,7 +55,7 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 
 // ==== tune: how the search went
 
-// The value of every evaluation, and the least so far.
+// Makes the figure of a tuning: the value of every evaluation, and the least so far.
 owned_figure *tune_figure_create(const tuning *t, const char *changes)
 {
     owned_figure *o = owned_figure_create(1, "%s: tuned%s", t->asked.base->name, changes);
@@ -99,8 +100,8 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes)
 
 // ==== identify: residuals of the fit
 
-// A channel's residuals in the panel of its trace, a dot for each reading that counts.
-// Returns the first residual of the next channel.
+// Adds the residuals of a channel to the panel of its trace, a dot for each reading that
+// counts. Returns where the residuals of the next channel begin.
 static const double *add_channel(owned_figure *o, int panel, const recorded_trace *t,
                                  int channel, const double *residual)
 {
@@ -123,7 +124,7 @@ static const double *add_channel(owned_figure *o, int panel, const recorded_trac
     return residual;
 }
 
-// Residuals over time, in a panel for each recording.
+// Makes the figure of an identification: residuals over time, in a panel for each trace.
 owned_figure *identify_figure_create(const identification *id)
 {
     assert(id->trace_count > 0 && id->trace_count <= FIGURE_PANELS);
@@ -158,7 +159,7 @@ owned_figure *identify_figure_create(const identification *id)
 // ==== linear: Bode and Nyquist
 
 #define PI  3.14159265358979323846
-#define FAR 3.0 // what is farther from the origin is not drawn in the plane
+#define FAR 3.0 // loop gains of this size or more are not drawn in the plane
 
 enum { GAIN_PANEL, PHASE_PANEL, BODE_PANELS, CIRCLE_POINTS = 121 };
 
@@ -172,6 +173,7 @@ static double *frequencies_of(owned_figure *o, const linear_response *r)
     return frequency;
 }
 
+// Gains of a response [dB].
 static double *decibels_of(owned_figure *o, const linear_response *r)
 {
     double *gain = owned_figure_numbers(o, (size_t)r->count);
@@ -181,8 +183,8 @@ static double *decibels_of(owned_figure *o, const linear_response *r)
     return gain;
 }
 
-// Phases of a response [degrees], which go on where they turn beyond half a revolution;
-// NaN where there is no gain.
+// Phases of a response [degrees], unwrapped: a step of more than half a revolution
+// between neighbours is a full revolution that carg leaves out. NaN where the gain is 0.
 static double *phases_of(owned_figure *o, const linear_response *r)
 {
     double *phase = owned_figure_numbers(o, (size_t)r->count);
@@ -204,7 +206,7 @@ static double *phases_of(owned_figure *o, const linear_response *r)
     return phase;
 }
 
-// Gain and phase over the frequency.
+// Makes the Bode plot of responses: gain and phase over the frequency.
 owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, int count)
 {
     assert(count >= 1 && count <= FIGURE_PANELS);
@@ -238,7 +240,7 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
     return o;
 }
 
-// The loop gain in the complex plane, as far as it is near the origin.
+// Adds the loop gain in the complex plane, without what is FAR from the origin.
 static void add_loop_gain(owned_figure *o, const linear_response *loop)
 {
     const size_t count = (size_t)loop->count;
@@ -253,7 +255,7 @@ static void add_loop_gain(owned_figure *o, const linear_response *loop)
     owned_figure_add(o, 0, (figure_series){"loop", "loop gain", x, y, count});
 }
 
-// Where the size of a gain is one.
+// Adds the circle of gains of size 1.
 static void add_unit_circle(owned_figure *o)
 {
     double *x = owned_figure_numbers(o, CIRCLE_POINTS);
@@ -267,7 +269,8 @@ static void add_unit_circle(owned_figure *o)
                                      .colour = SLOT_BLACK, .style = LINE_DASHED});
 }
 
-// The loop gain in the complex plane, with the circle of size 1.
+// Makes the Nyquist plot: the loop gain in the complex plane, with the circle of size 1
+// and the critical point -1.
 owned_figure *nyquist_figure_create(const scenario *s, const linear_response *loop)
 {
     static const double critical[] = {-1, 0};

@@ -263,14 +263,16 @@ static void describe_line(owned_figure *o, const sweep_picture *p, const varied 
     owned_figure_add(o, 0, s);
 }
 
-// A parameter of words and one of numbers: a curve for each word, over the numbers.
+// Describes a sweep over a parameter of words and one of numbers: a curve for each word,
+// over the numbers.
 static void describe_words(owned_figure *o, const sweep_picture *p, const varied *both,
                            int words)
 {
     const varied *word = &both[words], *number = &both[1 - words];
     const size_t count = number->count;
 
-    // the runs go through the second axis first
+    // the index of a run is (point of the first axis) count of the second + (point of the
+    // second): the distances of neighbours along each axis
     size_t word_step = 1, number_step = 1;
     if (words == 0) {
         word_step = number->count;
@@ -291,7 +293,7 @@ static void describe_words(owned_figure *o, const sweep_picture *p, const varied
     }
 }
 
-// The axis of words that gives a curve each, -1 if the picture is a map.
+// The index of the axis of words that get a curve each; -1 if the picture is a map.
 static int axis_of_curves(const varied *both, const sweep *from)
 {
     for (int i = 0; i < 2 && from->sampling == SWEEP_GRID && from->axis_count == 2; i++) {
@@ -302,7 +304,7 @@ static int axis_of_curves(const varied *both, const sweep *from)
     return -1;
 }
 
-// The radius of shaded dots [pt].
+// The radius of shaded dots, smaller where they are many [pt].
 static double dot_radius(size_t dots)
 {
     if (dots > 1000) {
@@ -314,7 +316,8 @@ static double dot_radius(size_t dots)
     return 3.2;
 }
 
-// Two parameters: a map of every combination, or dots where they were drawn.
+// Describes a sweep over two parameters: a map of all combinations of a grid, or shaded
+// dots where values were drawn at random.
 static void describe_map(owned_figure *o, const sweep_picture *p, const varied *both,
                          figure_axis quantity)
 {

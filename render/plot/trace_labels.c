@@ -7,8 +7,9 @@
 #include "src/base/shipped.h"
 #include "src/rig/rig.h"
 
-// A quantity's symbol is set italic, its index upright, and so is a word. The index of
-// the last link is that of the body: 3 of two links, 21 of twenty.
+// The symbol of a signal as markup. The quantity is set italic, an index or a word
+// upright. The index of the last link is the number of its body, links + 1: 3 for two
+// links.
 char *trace_symbol(const scenario *s, int index)
 {
     const signal_info *signal = &signal_table[index];
@@ -18,7 +19,7 @@ char *trace_symbol(const scenario *s, int index)
         letters = (size_t)(body - symbol);
     }
 
-    // words stand upright, the last link bears the number of its body
+    // a symbol of more than two letters is a word
     if (body == NULL && g_utf8_strlen(symbol, -1) > 2) {
         return g_strdup(symbol);
     }
@@ -35,7 +36,8 @@ bool trace_hub_is_first_link(const scenario *s)
            s->parameters.arm.hub_joint == HUB_RIGID;
 }
 
-// The first link's signal of the same quantity as the hub's, or -1.
+// The first link's signal of the quantity that a signal of the hub shows; -1 if there is
+// none, or if the signal is not of the hub.
 static int first_link_twin(int index)
 {
     const signal_info *hub = &signal_table[index];
@@ -48,7 +50,7 @@ static int first_link_twin(int index)
     return -1;
 }
 
-// "θ1 = θ2" where the hub is part of the first link.
+// The symbol of a series; "θ1 = θ2" where the hub is part of the first link.
 char *trace_series_symbol(const scenario *s, int index)
 {
     const int twin = first_link_twin(index);
@@ -60,7 +62,8 @@ char *trace_series_symbol(const scenario *s, int index)
     return text_printf("%s = %s", symbol, other);
 }
 
-// A symbol and what it is.
+// The label of a series: its symbol, and the name of its body or its description.
+// `joined`: a signal of the hub stands for the first link, too, if the hub is part of it.
 char *trace_series_label(const scenario *s, int index, bool joined)
 {
     const signal_info *signal = &signal_table[index];
@@ -69,7 +72,7 @@ char *trace_series_label(const scenario *s, int index, bool joined)
         return text_printf("%s  hub and first link", both);
     }
 
-    // what belongs to no body is described as a whole
+    // a signal of no body has its description
     const char *words = signal->description;
     if (signal->body != BODY_NONE) {
         words = signal_body_name(signal->body);
@@ -78,7 +81,7 @@ char *trace_series_label(const scenario *s, int index, bool joined)
     return text_printf("%s  %s", symbol, words);
 }
 
-// A duration in the unit in which it is no long number.
+// A duration in µs, ms or s, whichever makes the number short.
 static char *duration_text(double seconds)
 {
     if (seconds < 1e-3) {
@@ -90,7 +93,7 @@ static char *duration_text(double seconds)
     return text_printf("%g\u2009s", seconds);
 }
 
-// Of the law's list, which may be shorter.
+// The name of a mode of the scenario's law; NULL if the law has no such mode.
 const char *trace_mode_name(const scenario *s, int mode)
 {
     const controller *law = controller_of(s->parameters.control.law);
@@ -102,7 +105,7 @@ const char *trace_mode_name(const scenario *s, int mode)
     return NULL;
 }
 
-// What drives the arm: a voltage, or a controller.
+// Adds what drives the arm to a caption: a voltage, or a controller.
 static void add_drive(GString *out, const parameters *p)
 {
     if (p->control.law == LAW_NONE) {
@@ -110,7 +113,7 @@ static void add_drive(GString *out, const parameters *p)
         return;
     }
 
-    // the law with its rate and what it is asked for
+    // the law with its rate and its command
     const char *law = control_law_table[p->control.law].word;
     text_append(out, ", on the rig: %s at %g\u2009Hz", law, p->control.rate);
     if (p->control.law == LAW_OPEN_LOOP) {
@@ -120,30 +123,30 @@ static void add_drive(GString *out, const parameters *p)
     }
 }
 
-// The meaning of the shading and, of several runs, the run it belongs to; points of data
-// have no contact.
+// Adds the meaning of the shading to a caption and, if there are several runs, to which
+// of them it belongs. Measured points are not counted, since they have no contact.
 static void add_shading(GString *out, const trace_run *runs, int run_count,
                         const char *shaded)
 {
-    int full = 0;
+    int simulated = 0;
     for (int i = 0; i < run_count; i++) {
         if (!runs[i].points) {
-            full++;
+            simulated++;
         }
     }
-    if (full < 2 || runs[0].name == NULL) {
+    if (simulated < 2 || runs[0].name == NULL) {
         text_append(out, "Shaded: %s.", shaded);
         return;
     }
 
-    // several could be meant, so it is named
+    // it belongs to the first of several runs
     g_autofree char *name = text_escape(runs[0].name);
     text_append(out, "Shaded: %s of the first run (%s), whose marks are shown.", shaded,
                 name);
 }
 
-// The model and its arm; of the printed one the constants in which it departs from the
-// thesis's own numbers or from the beam's.
+// Adds the model and its arm to a caption; for the printed model also the constants that
+// may differ from the thesis's or the beam's.
 static void add_arm(GString *out, const parameters *p)
 {
     static const char *const hub_texts[] = {
@@ -161,7 +164,7 @@ static void add_arm(GString *out, const parameters *p)
     }
 }
 
-// The method of a run and its step.
+// Adds the method of a run and its step to a caption.
 static void add_method(GString *out, const trace_run *run)
 {
     const parameters *p = &run->scenario->parameters;
@@ -176,7 +179,7 @@ static void add_method(GString *out, const trace_run *run)
         text_append(out, "%s engine, located events", run->result->summary.method);
     }
 
-    // the event method's step is but the spacing of rows
+    // for the event method the step is only the spacing of rows
     g_autofree char *step = duration_text(p->method.step);
     if (!printed && p->method.name == METHOD_EVENT) {
         text_append(out, ", a row every %s. ", step);

@@ -23,7 +23,7 @@ static char *action_label(const scenario *s, const event *e)
         return text_printf("push %.3g\u2009N·s", e->impulse);
     }
 
-    // anything else that is no change of a parameter
+    // any other event but a change of a parameter has no label
     if (e->kind != EVENT_CHANGE || e->index < 0 || e->index >= s->action_count) {
         return NULL;
     }
@@ -43,7 +43,7 @@ static void add_mark(GArray *marks, figure_mark mark)
     g_array_append_val(marks, mark);
 }
 
-// "force mode", or of a mode without a name "mode 2".
+// The label of a controller's mode: "force mode", or "mode 2" if it has no name.
 static const char *mode_label(owned_figure *o, const scenario *s, double mode)
 {
     const char *name = trace_mode_name(s, (int)mode);
@@ -54,13 +54,14 @@ static const char *mode_label(owned_figure *o, const scenario *s, double mode)
     return owned_figure_printf(o, "%s mode", escaped);
 }
 
-// Where the controller went into another mode, with the mode's name.
+// Adds a mark with the mode's name at each row where the controller goes over to another
+// mode.
 static void mark_modes(owned_figure *o, GArray *marks, const trace_run *run)
 {
     const trace *rows = &run->result->trace;
     double mode = (double)NAN;
 
-    // wherever the mode is another than in the last row that had one
+    // rows between samples may have no mode: each is compared with the last one that has
     for (size_t i = 0; i < rows->row_count; i++) {
         double now = rows->rows[i].controller_mode;
         if (isfinite(now) && isfinite(mode) && now != mode && marks->len < TRACE_MARKS) {
@@ -74,8 +75,8 @@ static void mark_modes(owned_figure *o, GArray *marks, const trace_run *run)
     }
 }
 
-// The first pulse, its peak at its point where the first panel shows forces, and what the
-// script did.
+// Adds marks at contact, peak and release of the first pulse, and at the actions of the
+// scenario. The peak's mark has a point if the first panel shows the force.
 static void mark_contact(owned_figure *o, GArray *marks, const trace_run *run)
 {
     const trace *rows = &run->result->trace;
@@ -108,12 +109,12 @@ static void mark_contact(owned_figure *o, GArray *marks, const trace_run *run)
     }
 }
 
-// Of a run with a controller its modes, else contact and script.
+// Adds the marks of a run: the modes of its controller, or if it has none, contact and
+// actions.
 void trace_mark_events(owned_figure *o, const trace_run *run)
 {
     GArray *marks = g_array_new(FALSE, FALSE, sizeof(figure_mark));
 
-    // modes of a controller say more than contacts
     if (run->scenario->parameters.control.law != LAW_NONE) {
         mark_modes(o, marks, run);
     }
@@ -124,14 +125,14 @@ void trace_mark_events(owned_figure *o, const trace_run *run)
     o->figure.marks = owned_figure_keep(o, g_array_free(marks, FALSE));
 }
 
-// Intervals from each row that is in contact, or in the mode, to the first that is
-// not.
+// Adds the shaded intervals of a trace: those in contact, or with `modes` those in the
+// controller's mode 1. Each ends at the first row after it.
 void trace_shade(owned_figure *o, const trace *rows, bool modes)
 {
     GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_interval));
     bool open = false;
 
-    // from each first row that is so to the next one that is not
+    // an interval begins at its first row, and every further row moves its end
     for (size_t i = 0; i < rows->row_count; i++) {
         const sample *row = &rows->rows[i];
         bool now = row->contact > 0.5;
@@ -150,7 +151,7 @@ void trace_shade(owned_figure *o, const trace *rows, bool modes)
     o->figure.intervals = owned_figure_keep(o, g_array_free(found, FALSE));
 }
 
-// One for each impact.
+// The impulses of a trace, one for each impact; *count becomes their number.
 figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o)
 {
     GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_impulse));
@@ -176,18 +177,19 @@ bool trace_shows(const trace_run *run, const trace_panel *panel, int index)
 
 enum { PEAKS = 2 };
 
-// The force with its peaks, of the first pulse and of the whole run, among the rows that
-// they lie between, so that no mark stands above the curve.
+// Inserts the peaks of the first pulse and of the whole run between the rows of the
+// force. They lie between rows, and without them the mark of a peak would stand above the
+// curve.
 static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
 {
-    // the first pulse's, and the whole run's where it comes later
+    // the whole run's peak counts only if it comes after that of the first pulse
     const double first = m->first_contact_s + m->first_pulse_time_to_peak_s;
     const double whole = m->first_contact_s + m->time_to_peak_s;
     const double at[PEAKS] = {first, whole};
     const double height[PEAKS] = {m->first_pulse_peak_N, m->peak_force_N};
     const int peaks = whole <= first ? 1 : PEAKS;
 
-    // each row, and before it the peaks since the last one
+    // each row, and before it the peaks since the row before
     double *x = owned_figure_numbers(o, s->count + PEAKS);
     double *y = owned_figure_numbers(o, s->count + PEAKS);
     size_t out = 0;
@@ -203,14 +205,15 @@ static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
         y[out++] = series_y(s, i);
     }
 
-    // the series is a copy now
+    // the series uses the copy
     s->x = x;
     s->y = y;
     s->count = out;
     s->stride = 0;
 }
 
-// Points into the trace's own rows; only the force is copied, to add its peaks.
+// The series of a signal. It points into the trace's rows; only the force is copied, with
+// its peaks.
 figure_series trace_series(const trace_run *run, int index, owned_figure *o)
 {
     assert(index >= 0 && index < signal_count);
@@ -220,7 +223,7 @@ figure_series trace_series(const trace_run *run, int index, owned_figure *o)
     figure_series s = {signal->name, .count = rows->row_count, .stride = sizeof(sample),
                        .colour = signal->colour, .style = signal->style};
 
-    // a run without rows gives no addresses
+    // without rows there are no addresses
     if (base != NULL) {
         s.x = (const double *)(base + offsetof(sample, time));
         s.y = (const double *)(base + signal->offset);
@@ -241,7 +244,7 @@ double trace_value(const trace *t, int index, double time, size_t side)
     return signal_value(&there, index);
 }
 
-// Row by row of the first trace.
+// The series of the difference of a signal between two traces, at the rows of the first.
 figure_series trace_difference(const trace *of, const trace *less, int index,
                                owned_figure *o)
 {
@@ -257,8 +260,8 @@ figure_series trace_difference(const trace *of, const trace *less, int index,
 
 // ==== measured data
 
-// The signal that the spec's column stands for: the one of its name, or of its unit; -1
-// for none.
+// The signal that a column of measured data stands for: the signal of its name, or the
+// first one shown with the unit in its heading; -1 if there is none.
 static int signal_of(const csv_table *table, const char *column,
                      const trace_panel *panels, int count)
 {
@@ -267,7 +270,7 @@ static int signal_of(const csv_table *table, const char *column,
         return named;
     }
 
-    // its unit, "[N]" of its heading
+    // the unit in the heading, such as "[N]"
     char unit[32] = "";
     const char *bracket = strrchr(table->headings[at], '[');
     if (bracket != NULL) {
@@ -285,7 +288,8 @@ static int signal_of(const csv_table *table, const char *column,
     return -1;
 }
 
-// Reads the table, chooses what it holds of signals, and shifts its times.
+// Reads a table of measured data: one column of it, or all that are signals, with its
+// times shifted [s]. *name becomes its name in the legend.
 status overlay_read_column(trace *t, const char *path, const char *column, double shift,
                            const trace_panel *panels, int panel_count, char **name,
                            fault *f)
@@ -319,15 +323,15 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     }
     csv_table_finish(&table);
 
-    // as the clocks were apart
+    // the data's clock differed by this from the run's
     for (size_t i = 0; i < t->row_count; i++) {
         t->rows[i].time += shift;
     }
     return code;
 }
 
-// Cuts a text off at the last of a character and returns what stood behind it; NULL if
-// there is none.
+// Ends a text at the last occurrence of a character and returns what came after it; NULL
+// if the character does not occur.
 static const char *cut_off(char *text, char last)
 {
     char *at = strrchr(text, last);
@@ -338,6 +342,7 @@ static const char *cut_off(char *text, char last)
     return at + 1;
 }
 
+// Reads a text that is a number and nothing else.
 static bool read_shift(const char *text, double *shift)
 {
     const char *rest;
