@@ -41,11 +41,11 @@
 #include "src/predict/two_link.h"
 #include "src/tables/features.h"
 
-#define STEP        1e-4 // of the way to the band; fourth order [s]
-#define COARSE_STEP 5e-4 // of the other ways [s]
-// beyond the band's edge, so that rounding does not lead out again [s]
+#define STEP        1e-4 // of the integration to the band [s]
+#define COARSE_STEP 5e-4 // of the integrations that only try something out [s]
+// time past the band's edge, so that rounding does not lead out again [s]
 #define INSIDE  1e-6
-#define HORIZON 1.0 // ways longer than this are given up [s]
+#define HORIZON 1.0 // motions that take longer are given up [s]
 #define HOLDING 0.3 // time for which staying in the band is tried out [s]
 
 bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
@@ -88,7 +88,8 @@ bool pressed_after_impact(const parameters *p, const three_body_state *before,
     return true;
 }
 
-// The force under a torque of the motor [N].
+// The force on the wall [N] under a torque that the command asks of the motor: f = K x -
+// mu x'', with x'' from the hub's equation of motion.
 static double force_under(const pressed_arm_model *m, pressed_state s, double torque)
 {
     double friction = 0;
@@ -96,30 +97,32 @@ static double force_under(const pressed_arm_model *m, pressed_state s, double to
         friction = copysign(m->stiction, s.velocity);
     }
 
-    // of motor and back EMF the current's limit leaves
+    // the limit of the current bounds the torque less the back EMF's part of the damping
     const double viscous = m->viscous * s.velocity, limit = m->current_torque;
     double motor = torque - m->damping * s.velocity;
     motor = smaller(limit - viscous, larger(-limit - viscous, motor));
 
-    // f = K x - mu x''
-    const double sum = motor - friction - m->stiffness * s.x;
-    return m->spring_force * s.x - m->mass_force * sum / m->inertia;
+    const double hub_torque = motor - friction - m->stiffness * s.x;
+    return m->spring_force * s.x - m->mass_force * hub_torque / m->inertia;
 }
 
-// The force that a way asks for: the largest that `highest` allows, the smallest that
-// `lowest` allows, or K xi limited to between them. The motor then limits it further.
+// How the arm presses on its way: with the largest force allowed, `highest`, with the
+// smallest one, `lowest`, or with K xi limited to these two. The motor then limits the
+// force further.
 typedef enum press_rule { PRESS_HARD, PRESS_SOFT, PRESS_KEEP } press_rule;
 typedef struct way {
     press_rule rule;
     double lowest, highest; // [N]
 } way;
 
-// K xi [N].
+// K xi [N], xi being the mode that runs away: x + x'/s, s = sqrt(K/mu).
 static double runaway(const pressed_arm_model *m, pressed_state s)
 {
     return m->spring_force * (s.x + s.velocity / sqrt(m->spring_force / m->mass_force));
 }
 
+// The force on the wall [N]: what the way asks for, within what the motor's full torque
+// in either direction gives.
 static double force_on(const pressed_arm_model *m, const way *w, pressed_state s)
 {
     double wanted;
@@ -130,11 +133,14 @@ static double force_on(const pressed_arm_model *m, const way *w, pressed_state s
     } else {
         wanted = fmin(fmax(runaway(m, s), w->lowest), w->highest);
     }
-    double least = force_under(m, s, m->torque_limit),
-           most = force_under(m, s, -m->torque_limit);
+
+    // a torque towards the wall speeds the hub up and so takes force off the wall
+    const double least = force_under(m, s, m->torque_limit);
+    const double most = force_under(m, s, -m->torque_limit);
     return fmin(fmax(wanted, least), most);
 }
 
+// The rates of x and x' on a way: x'' = (K x - f)/mu.
 static pressed_state pressed_rate(const pressed_arm_model *m, const way *w,
                                   pressed_state s)
 {
@@ -182,14 +188,18 @@ double best_peak(const pressed_arm_model *m, pressed_state s)
         return (double)NAN;
     }
 
-    // bracket, then halve; on the edge itself the arm takes for ever to stop. However
-    // weak the motor, some force stops it: the beam's own
+    // raise the peak until it stops the arm, as the bent beam alone does in the end, then
+    // bisect; with the least peak itself the arm would take for ever to stop
     while (!stops(m, s, high) && isfinite(high)) {
         high = 1.5 * high + 1e-3;
     }
     while (high - low > 1e-5 * high) {
-        double middle = (low + high) / 2;
-        *(stops(m, s, middle) ? &high : &low) = middle;
+        const double middle = (low + high) / 2;
+        if (stops(m, s, middle)) {
+            high = middle;
+        } else {
+            low = middle;
+        }
     }
     return high;
 }
@@ -212,8 +222,9 @@ static bool stays(const pressed_arm_model *m, const way *band, pressed_state s)
     return beyond_band(band, runaway(m, s)) < 1e-6 * band->highest;
 }
 
-// The state at which K xi comes to `edge` within the step from `s` to `next`, a little
-// beyond it; *share: where in the step, -1 if it does not.
+// The state a little after K xi reaches `edge` within the step from `s` to `next`. *share
+// receives the part of the step until then, by linear interpolation, or -1 if K xi does
+// not reach the edge.
 static pressed_state crossing(const pressed_arm_model *m, const way *on, pressed_state s,
                               pressed_state next, double edge, double *share)
 {
@@ -226,7 +237,8 @@ static pressed_state crossing(const pressed_arm_model *m, const way *on, pressed
     return pressed_advance(m, on, s, *share * STEP + INSIDE);
 }
 
-// The edge of the band that a way comes to: hard pressing from above, soft from below.
+// The edge of the band that K xi reaches first on a way: hard pressing lowers it from
+// above the band, soft pressing raises it from below.
 static double near_edge(const way *on, const way *band)
 {
     if (on->rule == PRESS_HARD) {
@@ -250,7 +262,8 @@ static bool is_lost(const way *on, const way *band, double xi, double force)
     return xi > band->highest && force <= xi;
 }
 
-// Time on a way until the force can stay in the band; NaN if it is not below `limit`.
+// The time [s] on a way until the force can stay in the band; NaN if it is not below
+// `limit` or the way fails.
 static double time_on(const pressed_arm_model *m, const way *on, const way *band,
                       pressed_state s, double limit)
 {
@@ -263,7 +276,7 @@ static double time_on(const pressed_arm_model *m, const way *on, const way *band
             return t;
         }
 
-        // on, looking for the edge within the step
+        // a step on; the force may come to stay from where it reaches the edge within it
         pressed_state next = pressed_advance(m, on, s, STEP);
         pressed_state edge = crossing(m, on, s, next, near_edge(on, band), &share);
         if (share >= 0 && stays(m, band, edge)) {
@@ -274,27 +287,27 @@ static double time_on(const pressed_arm_model *m, const way *on, const way *band
     return (double)NAN;
 }
 
-// The least time on one way for a while and then on another, over all whiles; `best` if
-// it is not below that.
+// The least time [s] to the band on one way first and then on another, over all instants
+// t at which the ways may change; `best` if none is below that.
 static double time_on_both(const pressed_arm_model *m, const way *first,
                            const way *second, const way *band, pressed_state s,
                            double best)
 {
     for (double t = 0; t < best; t += STEP) {
-        double more = time_on(m, second, band, s, best - t), share;
-        best = fmin(t + more, best);
+        double remaining = time_on(m, second, band, s, best - t), share;
+        best = fmin(t + remaining, best);
 
         if (is_lost(first, band, runaway(m, s), force_on(m, first, s))) {
             break;
         }
 
-        // and from the edge itself, which lies within a step
+        // or change at the edge of the band, which lies within a step
         pressed_state next = pressed_advance(m, first, s, STEP);
         pressed_state edge = crossing(m, first, s, next, near_edge(first, band), &share);
         if (share >= 0) {
-            double at = t + share * STEP;
-            more = time_on(m, second, band, edge, best - at);
-            best = fmin(at + more, best);
+            const double edge_time = t + share * STEP;
+            remaining = time_on(m, second, band, edge, best - edge_time);
+            best = fmin(edge_time + remaining, best);
         }
         s = next;
     }
@@ -315,7 +328,7 @@ double best_settling(const pressed_arm_model *m, pressed_state s, double force,
         return (double)NAN;
     }
 
-    // the better of the two orders
+    // the better of both orders of soft and hard pressing
     double best = time_on_both(m, &soft, &hard, &settled, s, HORIZON);
     best = time_on_both(m, &hard, &soft, &settled, s, best);
     if (best < HORIZON) {

@@ -81,10 +81,11 @@ static bool printed_energy_force(const parameters *p, const three_body_state *s,
     return solved;
 }
 
-// Share of the energy at the touch that structural damping leaves for the largest bend,
-// 4.3 in numbers: the arm on the wall is a damped oscillator of one degree of freedom,
-// and from a bend b that grows at b' it is largest a phase atan(b'/(w b)) later. 1
-// without arm.damping_ratio.
+// The share of the energy at the touch that structural damping leaves until the bend is
+// largest, as 4.3 proposes. The arm on the wall is a damped oscillator of one degree of
+// freedom with the decay d and the frequency w. From a bend b that grows at b' it is
+// largest after the phase atan(b'/(w b)), and the energy has fallen by exp(-2 d phase/w).
+// 1 without arm.damping_ratio.
 static double share_undamped(const parameters *p, const two_link *t,
                              const three_body_state *s)
 {
@@ -92,43 +93,48 @@ static double share_undamped(const parameters *p, const two_link *t,
         return 1;
     }
 
-    // damping in proportion to stiffness, as the arm of two links has it
+    // the time constant, joint damping over joint stiffness, of this arm with two links
     arm a;
-    parameters two = *p;
-    two.arm.links = 2;
-    two.arm.hub_joint = HUB_RIGID;
-    two.arm.link_inertia = two_link_inertia(p);
-    two.arm.joint_stiffness[0] = two.arm.link_lengths[0] = '\0'; // p's own joints
-    arm_init(&a, &two);
-    double seconds = a.joint_damping / a.joint_stiffness;
+    parameters two_links = *p;
+    two_links.arm.links = 2;
+    two_links.arm.hub_joint = HUB_RIGID;
+    two_links.arm.link_inertia = two_link_inertia(p);
+    two_links.arm.joint_stiffness[0] = two_links.arm.link_lengths[0] = '\0';
+    arm_init(&a, &two_links);
+    const double time_constant = a.joint_damping / a.joint_stiffness;
 
-    // the constrained arm: its second link turns against the first one
-    double ratio = -t->j2 / t->j3, last = t->m32 + t->m33 * ratio;
-    double mass = t->m22 + t->m23 * ratio - last + ratio * last;
-    double square = p->arm.k2 * (ratio - 1) * (ratio - 1) / mass,
-           damping = square * seconds / 2;
-    double frequency = sqrt(fmax(square - damping * damping, 0));
-    double bend = s->angle[2] - s->angle[1], rate = s->velocity[2] - s->velocity[1];
-    double phase = plain_atan2(fabs(rate), frequency * copysign(bend, rate * bend));
+    // the constrained arm, whose links turn as (1, ratio): its mass v'Mv, w0^2 and decay
+    const double ratio = -t->j2 / t->j3, last = t->m32 + t->m33 * ratio;
+    const double mass = t->m22 + t->m23 * ratio - last + ratio * last;
+    const double undamped_square = p->arm.k2 * (ratio - 1) * (ratio - 1) / mass;
+    const double decay = undamped_square * time_constant / 2;
+    const double frequency = sqrt(fmax(undamped_square - decay * decay, 0));
+
+    // the phase from the touch to the largest bend
+    const double bend = s->angle[2] - s->angle[1];
+    const double rate = s->velocity[2] - s->velocity[1];
+    const double phase = plain_atan2(fabs(rate), frequency * copysign(bend, rate * bend));
     if (frequency > 0) {
-        return plain_exp(-2 * damping * phase / frequency);
+        return plain_exp(-2 * decay * phase / frequency);
     }
     return 0;
 }
 
-// Corrected form: whole energy (4.23), shared by (4.24), and (4.28) without the k2 term
-// that does not belong there. With a hub spring its torque k1 D1 drives both links. With
-// a rigid hub hub and first link are one body, driven by the motor less the Coulomb
-// friction that slowed it.
+// The peak force in the corrected form: the whole energy (4.23) is shared by the springs
+// as in (4.24), and (4.28) goes without the k2 term that does not belong there. A hub
+// spring drives both links with its torque k1 D1. With a rigid hub, the hub and the first
+// link are one body, driven by the motor less the Coulomb friction that slowed it.
 static bool corrected_energy_force(const parameters *p, const three_body_state *s,
                                    double *force)
 {
+    // the energy, and how far it bends each spring: k2, and k1 at a hub with a spring
     two_link t;
     double stiffness[2] = {p->arm.k2, p->arm.k1}, bend[2];
     bool rigid = p->arm.hub_joint == HUB_RIGID;
     two_link_at(&t, p, FORM_CORRECTED, s->angle[1], s->angle[2]);
     double energy = whole_energy(p, s) * share_undamped(p, &t, s);
-    quasi_principle_deflections(rigid ? 1 : 2, stiffness, energy, bend);
+    const int springs = rigid ? 1 : 2;
+    quasi_principle_deflections(springs, stiffness, energy, bend);
     two_link_at(&t, p, FORM_CORRECTED, s->angle[1], s->angle[1] - bend[0]);
 
     // what drives the links while they are stopped: the motor, or the hub's spring

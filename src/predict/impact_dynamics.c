@@ -55,6 +55,7 @@ typedef struct integrated_motion {
     double both, last;                              // levers of f [m]
 } integrated_motion;
 
+// Fills in the coefficients from the state before the impact and the velocities after it.
 static void integrate_motion(integrated_motion *g, const parameters *p, const two_link *t,
                              const three_body_state *s, const double after[3])
 {
@@ -67,7 +68,7 @@ static void integrate_motion(integrated_motion *g, const parameters *p, const tw
         turning = sign_of(speed);
     }
 
-    // what (4.20)-(4.22) are made of
+    // the coefficients of (4.20)-(4.22)
     *g = (integrated_motion){
         .hub_inertia = p->arm.hub_inertia,
         .hub_damping = t->hub_damping,
@@ -86,7 +87,7 @@ static void integrate_motion(integrated_motion *g, const parameters *p, const tw
     };
 }
 
-// E1..E3 and their Jacobian, row by row.
+// Evaluates E1, E2, E3 at x = (T, f, w1), and their Jacobian row by row.
 static void equations(const integrated_motion *g, const double x[3], double e[3],
                       double jacobian[9])
 {
@@ -115,6 +116,7 @@ static void equations(const integrated_motion *g, const double x[3], double e[3]
     jacobian[8] = 0;
 }
 
+// c[0] + c[1] x + ... + c[degree] x^degree, by Horner's rule.
 static double polynomial(const double *c, int degree, double x)
 {
     double sum = c[degree];
@@ -187,8 +189,8 @@ static double hub_velocity_of_delay(const integrated_motion *g, double T)
     return drive / (g->k1 * T * T / 4 + g->hub_damping * T / 2 - g->hub_inertia);
 }
 
-// E2 less both/last times E3 is free of f: c[0] + c[1] T + c[2] T^2 without the terms of
-// k1.
+// The coefficients of E2 - (both/last) E3 = c[0] + c[1] T + c[2] T^2, in which the force
+// f cancels. The terms with k1 are left out: the caller adds them.
 static void force_free_terms(const integrated_motion *g, double c[3])
 {
     double lever = g->both / g->last, springs = g->twice + lever;
@@ -255,8 +257,10 @@ static status solve_with_hub_spring(const integrated_motion *g, double hub_veloc
     double c[3], roots[4], best = (double)INFINITY, x[3];
     force_free_terms(g, c);
 
-    // w1 = N / D; the sum of c, T k1 D1 and k1 T^2 (w2 - w1) / 4 times D, without the
-    // terms of k1 squared that cancel
+    // E1 gives w1 = N(T)/D(T) with D = d0 + d1 T + d2 T^2. Put into c[0] + c[1] T + c[2]
+    // T^2
+    // + k1 T D1 + k1 T^2 (w2 - w1)/4 = 0 and multiplied by D, that is a polynomial of
+    // fourth degree, in which the terms with the square of k1 cancel.
     double d0 = -g->hub_inertia, d1 = g->hub_damping / 2, d2 = g->k1 / 4;
     double hub1 = c[1] + g->k1 * g->hub_bend, hub2 = c[2] + g->k1 * g->w2 / 4;
     double quartic[5] = {c[0] * d0, c[0] * d1 + hub1 * d0,
@@ -295,7 +299,7 @@ static double earliest_delay(const double c[3])
         return earliest;
     }
 
-    // the form that does not cancel
+    // the root without cancellation, and the other one from the product of both, c0/c2
     double sum = -(c[1] + copysign(sqrt(discriminant), c[1])) / 2;
     double roots[2] = {sum / c[2], c[0] / sum};
     for (int i = 0; i < 2; i++) {
@@ -328,6 +332,8 @@ static void solve_quadratic(const integrated_motion *g, bool rigid_hub, double w
     out->force = force_of_delay(g, out->delay);
 }
 
+// Predicts by (4.10)-(4.22): the velocity jump, then delay and force from the integrated
+// equations, or with `closed_form` from their quadratic form.
 static status predict_by_momentum(const parameters *p, const three_body_state *s,
                                   bool closed_form, prediction *out, fault *f)
 {
@@ -369,7 +375,8 @@ static status predict_by_momentum(const parameters *p, const three_body_state *s
 status predict_impact_dynamics(const parameters *p, const three_body_state *s,
                                prediction *out, fault *f)
 {
-    return predict_by_momentum(p, s, false, out, f);
+    const bool closed_form = false;
+    return predict_by_momentum(p, s, closed_form, out, f);
 }
 
 // Hub and first link jump alike. Printed: w1 = w1(before) + Dw2 is then known, E1 and
@@ -383,5 +390,6 @@ status predict_impact_quadratic(const parameters *p, const three_body_state *s,
     if (p->arm.model != ARM_PRINTED) {
         rigid.arm.hub_joint = HUB_RIGID;
     }
-    return predict_by_momentum(&rigid, s, true, out, f);
+    const bool closed_form = true;
+    return predict_by_momentum(&rigid, s, closed_form, out, f);
 }

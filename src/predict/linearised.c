@@ -1,4 +1,5 @@
-// Two links on a rigid hub.
+// Predicts the pulse of a touch at this instant. Two links on a rigid hub have a closed
+// form.
 //
 // In contact the arm has one degree of freedom, the hub angle x: the constraint gives the
 // second link's angle and, with v = (1, -J_1/J_2), its velocity. With the sweeps of
@@ -30,21 +31,21 @@
 
 enum { PIECES = 3 };
 
-// As far as the closed form is followed: its three pieces are then 1 % off at worst
-// [rad].
+// Largest bend for which the closed form is used: its three pieces are then 1 % off at
+// worst [rad].
 #define CLOSED_FORM_BEND 0.6
 
-// And the share of critical damping below which its pieces are taken: with more the arm
-// stops late, far from where they are fitted.
+// Largest damping, over critical damping, for which the closed form is used: with more
+// the arm stops late, far from where the pieces are fitted.
 #define MOST_DAMPED 0.5
 
-// The peak is known if it grows by no more than this share of it between this share of
-// the horizon and its end.
+// The peak is known if between SETTLED_FROM times the horizon and the horizon it grows by
+// no more than SETTLED times itself.
 #define SETTLED_FROM 0.8
 #define SETTLED      5e-4
 
-// From one look at the energies to the next, at most and at least [s], and of the fastest
-// vibration where that is between them [rad].
+// The energies are sampled every LOOK_PHASE [rad] of the fastest vibration, within these
+// intervals [s].
 #define LONGEST_LOOK  1e-4
 #define SHORTEST_LOOK 3e-5
 #define LOOK_PHASE    0.1
@@ -76,8 +77,8 @@ arm arm_touching_now(const arm *a, const double *q)
     return touched;
 }
 
-// What is seen of energies: the last three looks, and the kinetic energy where the strain
-// was largest [J].
+// The energies of a pulse: the last three samples, and those where the strain energy was
+// largest.
 typedef struct seen_energies {
     double time[3]; // [s]
     state_energy at[3];
@@ -93,7 +94,8 @@ static void fit_parabola(const double x[2], double before, double f, double afte
     *slope = first - *bend * x[0];
 }
 
-// The largest strain between two looks is the top of the parabola through three.
+// Samples the energies. A maximum of the strain energy between samples is the top of the
+// parabola through three of them, f - slope^2/(4 bend).
 static void see_energies(const arm *a, motion *m, seen_energies *seen)
 {
     state_energy *at = seen->at;
@@ -110,13 +112,15 @@ static void see_energies(const arm *a, motion *m, seen_energies *seen)
     const double x[] = {seen->time[0] - seen->time[1], seen->time[2] - seen->time[1]};
     if (x[0] < 0 && x[1] > 0 && at[1].strain > at[0].strain &&
         at[1].strain > at[2].strain) {
-        double slope, bend, slope2, bend2;
+        double slope, bend, kinetic_slope, kinetic_bend;
         fit_parabola(x, at[0].strain, at[1].strain, at[2].strain, &slope, &bend);
-        fit_parabola(x, at[0].kinetic, at[1].kinetic, at[2].kinetic, &slope2, &bend2);
-        const double top = -slope / (2 * bend), strain = at[1].strain + slope / 2 * top;
+        fit_parabola(x, at[0].kinetic, at[1].kinetic, at[2].kinetic, &kinetic_slope,
+                     &kinetic_bend);
+        const double top = -slope / (2 * bend); // time from the middle sample to it [s]
+        const double strain = at[1].strain + slope / 2 * top;
+        const double kinetic = at[1].kinetic + top * (kinetic_slope + kinetic_bend * top);
         if (strain > seen->most.strain) {
-            seen->most =
-                (state_energy){at[1].kinetic + top * (slope2 + bend2 * top), strain};
+            seen->most = (state_energy){kinetic, strain};
         }
     }
 }
@@ -136,12 +140,13 @@ static double give_commands(arm *a, motion *m, const voltage_profile *command, i
     return HUGE_VAL;
 }
 
-// Puts the arm where it is touched, through the impact. Whether the touch holds.
+// Starts the motion at the touch and takes it through the impact. Returns whether the arm
+// stays in contact.
 static bool begin_touch(const arm *a, motion *m, const double *q, const double *w,
-                        double flows, prediction *out)
+                        double present_current, prediction *out)
 {
     const double limit = a->motor.current_limit > 0 ? a->motor.current_limit : HUGE_VAL;
-    const double current = a->motor.inductance > 0 ? flows : 0;
+    const double current = a->motor.inductance > 0 ? present_current : 0;
     motion_report report = {.event = m->wall_gives ? MOTION_TOUCH : MOTION_IMPACT};
     motion_start_at(a, m, q, w, fmax(-limit, fmin(current, limit)));
     if (m->state[SLOT_CONTACT] == 0) {
@@ -152,15 +157,16 @@ static bool begin_touch(const arm *a, motion *m, const double *q, const double *
     return m->state[SLOT_CONTACT] != 0;
 }
 
-// Follows the arm in contact to where that ends, to the horizon, or as far as it can be
-// followed.
+// Follows the arm until it leaves the wall, to the horizon, or for the most steps
+// allowed. Unless it leaves, the pulse is doubtful if its peak is not settled.
 static status follow_pulse(arm *a, motion *m, const voltage_profile *command,
                            seen_energies *seen, prediction *out)
 {
     const double settled = SETTLED_FROM * PULSE_HORIZON;
-    double before = 0; // the peak then [N]
+    double settled_peak = 0; // the peak at that instant [N]
     int next = 0, steps = 0;
     while (m->state[SLOT_TIME] < PULSE_HORIZON) {
+        // up to the next command, sample of the energies, or look at the peak
         double until = fmin(give_commands(a, m, command, &next), PULSE_HORIZON);
         if (seen != NULL) {
             see_energies(a, m, seen);
@@ -169,7 +175,7 @@ static status follow_pulse(arm *a, motion *m, const voltage_profile *command,
                                     fmax(fmin(look, LONGEST_LOOK), SHORTEST_LOOK));
         }
         if (m->state[SLOT_TIME] <= settled) {
-            before = m->record.pulse_peak;
+            settled_peak = m->record.pulse_peak;
             if (m->state[SLOT_TIME] < settled) {
                 until = fmin(until, settled);
             }
@@ -190,7 +196,8 @@ static status follow_pulse(arm *a, motion *m, const voltage_profile *command,
     }
 
     // a force that still rises has its peak beyond the horizon
-    const bool rises = m->record.pulse_peak - before > SETTLED * m->record.pulse_peak;
+    const double growth = m->record.pulse_peak - settled_peak;
+    const bool rises = growth > SETTLED * m->record.pulse_peak;
     out->doubtful = rises || steps > MOST_STEPS;
     return STATUS_OK;
 }
@@ -213,7 +220,7 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
         return STATUS_NO_MEMORY;
     }
 
-    // numbers only where they are to be relied on
+    // force and delay only of a pulse that holds and was followed to its peak
     seen_energies seen = {0};
     const bool held = begin_touch(&a, m, q, w, given.current, out);
     status s = STATUS_OK;
@@ -225,14 +232,15 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
         out->force = m->record.pulse_peak;
         out->delay = m->record.pulse_peak_time;
     }
+
+    // e_eq: the kinetic energy gained from the largest strain to the release, over that
+    // strain's energy
     if (out->holds && energies && m->state[SLOT_CONTACT] == 0) {
         see_energies(&a, m, &seen);
-        const double left = motion_energy(&a, m, m->state).kinetic;
-
-        // where no joint stores anything there is no restitution
+        const double at_release = motion_energy(&a, m, m->state).kinetic;
         out->restitution = (double)NAN;
         if (seen.most.strain > 0) {
-            out->restitution = (left - seen.most.kinetic) / seen.most.strain;
+            out->restitution = (at_release - seen.most.kinetic) / seen.most.strain;
         }
     }
     motion_destroy(m);
@@ -249,7 +257,8 @@ typedef struct oscillation {
     double sine;      // coefficient of the sine [rad]
 } oscillation;
 
-// False of one that is damped by more than MOST_DAMPED.
+// The oscillation y'' = a - c (y' - v) - k y that starts at y = 0 with the velocity v and
+// the acceleration a. False if it is damped by more than MOST_DAMPED.
 static bool oscillation_from(double acceleration, double velocity, double c, double k,
                              oscillation *o)
 {
@@ -322,7 +331,8 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     p->bend = q[1] - q[0];
 }
 
-// Tangents at the touch: c and k of y'' = a - c y' - k y.
+// The damping c = (v'Cv)/(v'Mv) and the stiffness k = (v'Kv)/(v'Mv) at the touch, v = (1,
+// ratio) being the direction in which the constraint lets both links move.
 static void pressed_tangents(const arm *a, const double *q, double *c, double *k)
 {
     double l = a->link_length, m = a->link_mass, unit[2][2] = {{1, 0}, {0, 1}};
@@ -450,8 +460,8 @@ static bool path_peak(pressed_arm *p, const pressed_path *path, double first,
 
 // --- the touch -------------------------------------------------------------------------
 
-// The velocities just after the plastic impact of two links on a rigid wall, and whether
-// it holds.
+// Finds the velocities just after the plastic impact of two links on a rigid wall, and
+// the impulse. Returns whether the arm then stays: no restitution, and a force above 0.
 static bool touch_holds(const arm *touched, const double *q, const double *w,
                         double after[2], contact_state *mode, double *impulse)
 {
@@ -515,5 +525,6 @@ status predict_linearised(const arm *a, const method_parameters *method, const d
             return STATUS_OK;
         }
     }
-    return predict_pulse(a, method, q, w, NULL, false, out);
+    const bool energies = false;
+    return predict_pulse(a, method, q, w, NULL, energies, out);
 }

@@ -8,7 +8,7 @@
 #include "src/predict/linearised.h"
 #include "src/tables/features.h"
 
-// The linearised arm asks for the state of all links.
+// Asks the linearised arm, which needs the state of all links.
 static prediction_outcome ask_linearised(const prediction_question *question,
                                          prediction *out, fault *f)
 {
@@ -23,18 +23,20 @@ static prediction_outcome ask_linearised(const prediction_question *question,
     voltage_profile command = question->command;
     command.current = question->current;
     const double *q = question->angles, *w = question->velocities;
-    const bool as_is = command.count == 0 && p->motor.inductance == 0;
+    const bool constant_command = command.count == 0 && p->motor.inductance == 0;
+    bool energies = false;
     status code;
-    if (as_is) {
+    if (constant_command) {
         code = predict_linearised(&a, &p->method, q, w, out);
     } else {
-        code = predict_pulse(&a, &p->method, q, w, &command, false, out);
+        code = predict_pulse(&a, &p->method, q, w, &command, energies, out);
     }
 
-    // e_eq is that of the pulse to its end
+    // e_eq needs the energies of the pulse, followed to its end
     prediction whole;
     if (code == STATUS_OK && question->whole_pulse && out->holds) {
-        code = predict_pulse(&a, &p->method, q, w, &command, true, &whole);
+        energies = true;
+        code = predict_pulse(&a, &p->method, q, w, &command, energies, &whole);
         out->restitution = whole.restitution;
     }
     if (code != STATUS_OK) {
@@ -50,9 +52,8 @@ static prediction_outcome ask_linearised(const prediction_question *question,
     return PREDICTION_LOST;
 }
 
-// Mean command from the touch until `time` [V]: with it, kT/Ra times the time is the
-// integral of (4.20) over the prescribed v(t); at no time the command in force at the
-// touch.
+// The mean of the prescribed command v(t) from the touch until `time` [V], which stands
+// for v(t) in the integral (4.20); with time 0 the command in force at the touch.
 static double mean_voltage(const prediction_question *question, double time)
 {
     const voltage_profile *command = &question->command;
@@ -77,8 +78,8 @@ static double mean_voltage(const prediction_question *question, double time)
     return volts;
 }
 
-// The impact dynamics for a prescribed v(t): the delay says over which time the voltage
-// counts, and the mean voltage over it says the delay.
+// The impact dynamics for a prescribed command v(t), by fixed-point iteration: the delay
+// says over which time the voltage is averaged, and the mean voltage gives the delay.
 static status ask_impact_dynamics(predictor which, const prediction_question *question,
                                   prediction *out, fault *f)
 {
@@ -101,7 +102,8 @@ static status ask_impact_dynamics(predictor which, const prediction_question *qu
             return code;
         }
 
-        // half the way, as the mean of a voltage that changes its sign may overshoot
+        // half the way to the delay found: with a voltage that changes its sign the whole
+        // way may overshoot
         if (i == 0) {
             delay = found;
         } else {
@@ -112,7 +114,7 @@ static status ask_impact_dynamics(predictor which, const prediction_question *qu
                      "no delay goes with the mean of the prescribed voltage over it");
 }
 
-// The first of the features that a predictor does not take says so.
+// The outcome that names the first of the arm's features that a predictor does not take.
 static prediction_outcome outcome_without(feature_set refused)
 {
     static const feature_set features[] = {
@@ -128,6 +130,7 @@ static prediction_outcome outcome_without(feature_set refused)
     return outcome;
 }
 
+// Asks one predictor, after the features of the arm that it does not take.
 static prediction_outcome ask_predictor(predictor which,
                                         const prediction_question *question,
                                         prediction *out, fault *f)
@@ -190,18 +193,19 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
     return answer;
 }
 
-// Tells the answers what the inductance changes of the peak, as far as the linearised arm
-// knows.
+// Adds to every answer how much the motor's inductance changes the peak: the linearised
+// arm's force with the inductance less its force without.
 static void tell_inductance(const prediction_question *question,
                             prediction_answer answers[PREDICTOR_COUNT])
 {
-    parameters at_once = *question->parameters;
-    prediction_question without = *question;
-    at_once.motor.inductance = 0;
-    without.parameters = &at_once;
-    const prediction_answer other = predict_with(PREDICTOR_LINEARISED, &without);
+    parameters no_inductance = *question->parameters;
+    prediction_question question_without = *question;
+    no_inductance.motor.inductance = 0;
+    question_without.parameters = &no_inductance;
+    const prediction_answer without =
+        predict_with(PREDICTOR_LINEARISED, &question_without);
     const double change =
-        answers[PREDICTOR_LINEARISED].prediction.force - other.prediction.force;
+        answers[PREDICTOR_LINEARISED].prediction.force - without.prediction.force;
 
     for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
         prediction_answer *answer = &answers[which];

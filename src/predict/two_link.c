@@ -27,10 +27,10 @@ double two_link_inertia(const parameters *p)
     return m * l * l / 12;
 }
 
-// Contact constraint of the corrected model with the wall standing where the arm is. A
-// point at the beam's length 2l from the hub lies at A along the second link's line, with
-// |l r2 + A r3| = 2l, so A = l (sqrt(c^2 + 3) - c). A flat wall through the hub's axis
-// touches the tip; seen from there each link makes half the bend with it.
+// The slopes j2, j3 of the corrected model's contact constraint, the wall being where the
+// arm is. A point wall at the beam's length 2l from the hub lies at the distance A along
+// the second link, with |l r2 + A r3| = 2l, so A = l (sqrt(c^2 + 3) - c), c = cos(bend).
+// A flat wall contains the hub's axis and the tip: each link makes half the bend with it.
 static void contact_on_the_arm(two_link *t, int wall, double bend)
 {
     double l = t->length, c = inline_cos(bend);

@@ -16,7 +16,7 @@ typedef enum two_link_form {
                         // place, cos d = 1 in two terms, (a, b) where the wall is
     FORM_LISTED_ENERGY, // the listing's energy predictor: whole masses, both levers as in
                         // (4.34)
-    FORM_CORRECTED,     // derived anew, contact point on the arm
+    FORM_CORRECTED,     // the project's derivation, with the contact point on the arm
 } two_link_form;
 
 typedef struct two_link {

@@ -35,7 +35,7 @@ static const sample *row_entering(const trace *t, double time)
 
 // --- the sentences ---------------------------------------------------------------------
 
-// What drives the arm.
+// Writes what drives the arm: a voltage, or a control law by its name.
 static void write_drive(const scenario *s, char *text, size_t size)
 {
     const parameters *p = &s->parameters;
@@ -48,7 +48,7 @@ static void write_drive(const scenario *s, char *text, size_t size)
     snprintf(text, size, "the law '%s'", law);
 }
 
-// How near an arm comes to the wall that does not touch it.
+// Adds a sentence on a run without a touch: how near the arm comes to the wall.
 static void say_no_touch(account *a, const char *drive)
 {
     const trace *t = &a->run->trace;
@@ -70,7 +70,7 @@ static void say_no_touch(account *a, const char *drive)
     }
 }
 
-// How it comes to the wall; false if it does not.
+// Adds a sentence on how the arm comes to the wall; false if it does not.
 static bool say_approach(account *a)
 {
     const trace *t = &a->run->trace;
@@ -100,7 +100,8 @@ static bool say_approach(account *a)
     return true;
 }
 
-// What the blow takes, if there is one.
+// Adds a sentence on the first impact, if there is one: its impulse, and the kinetic
+// energy before and after it.
 static void say_blow(account *a)
 {
     const trace *t = &a->run->trace;
@@ -123,7 +124,7 @@ static void say_blow(account *a)
                  t->rows[trace_row_at(t, impact->time)].kinetic_energy);
 }
 
-// What the hub does first between the touch and the end of the pulse.
+// Writes what the hub does first between the touch and the end of the pulse.
 static void write_turn(const trace *t, double touch, double end, char *text, size_t size)
 {
     for (size_t i = 0; i < t->event_count; i++) {
@@ -143,7 +144,8 @@ static void write_turn(const trace *t, double touch, double end, char *text, siz
     snprintf(text, size, "the hub goes on turning");
 }
 
-// The pulse: where its force comes from, and the hub's reversal in it.
+// Adds a sentence on the pulse: its peak, the energy in the springs there, and what the
+// hub does.
 static void say_pulse(account *a, double touch, double end)
 {
     const trace *t = &a->run->trace;
@@ -163,7 +165,8 @@ static void say_pulse(account *a, double touch, double end)
                  peak, m->first_pulse_peak_N, at_peak->strain_energy, turn);
 }
 
-// What gives energy as it falls, and what as it rises.
+// The energies of a run, with the sign 1 of those that give energy as they fall, and -1
+// of those that give energy as they rise (works).
 static const struct {
     int signal;
     const char *name;
@@ -183,8 +186,9 @@ static const struct {
     {SIGNAL_INDEX(wall_loss), "the wall's damping", 1},
 };
 
-// Those that give between two rows (sign 1) or take (-1): "springs 0.01 J, motor 0.002
-// J". What is below a thousandth of what the arm turns over is left out.
+// Lists what gives energy between two rows (sign 1) or takes it (-1): "springs 0.01 J,
+// motor 0.002 J". Shares below a thousandth of the change of motion and springs are left
+// out.
 static void list_shares(const sample *from, const sample *to, double sign, char *text,
                         size_t size)
 {
@@ -192,7 +196,7 @@ static void list_shares(const sample *from, const sample *to, double sign, char 
                                  fabs(from->strain_energy - to->strain_energy));
     const int count = sizeof energy_shares / sizeof *energy_shares;
 
-    // the list, which begins as that of nobody
+    // "nothing" stays if the list has no entry
     size_t used = 0;
     snprintf(text, size, "nothing");
     const char *comma = "";
@@ -201,7 +205,7 @@ static void list_shares(const sample *from, const sample *to, double sign, char 
         const int signal = energy_shares[i].signal;
         const double fall = signal_value(from, signal) - signal_value(to, signal);
         const double share = sign * energy_shares[i].sign * fall;
-        if (share > least) { // one that the scenario has not is NaN
+        if (share > least) { // false of an energy that the scenario has not, which is NaN
             used += (size_t)snprintf(text + used, size - used, "%s%s %.3g J", comma,
                                      energy_shares[i].name, share);
             comma = ", ";
@@ -209,8 +213,8 @@ static void list_shares(const sample *from, const sample *to, double sign, char 
     }
 }
 
-// How the pulse ends: who gives energy from its peak on, and who takes it, or the arm
-// stays.
+// Adds a sentence on the end of the pulse: what gives energy from the peak to the release
+// and what takes it, or that the arm stays on the wall.
 static void say_release(account *a, double touch)
 {
     const trace *t = &a->run->trace;
@@ -224,7 +228,7 @@ static void say_release(account *a, double touch)
     const double end = touch + m->first_pulse_s;
     const char *then = m->impacts > 1 ? ", and comes back" : "";
 
-    // a peak is found in a pulse that has one
+    // without rows between the peak and the release there is no balance to tell
     double delay = m->first_pulse_time_to_peak_s;
     if (isnan(delay)) {
         delay = 0;
@@ -245,7 +249,8 @@ static void say_release(account *a, double touch)
         end, then, given, taken);
 }
 
-// What it ends with, and what would change that.
+// Adds a sentence on the end of the run: the force held, the force pressed with, or the
+// gap.
 static void say_end(account *a)
 {
     const trace *t = &a->run->trace;

@@ -10,10 +10,11 @@
 #include "src/run/resume.h"
 #include "src/session/session.h"
 
-// how much before an event a change at the row before it takes effect [s]
+// time before an event at which a change takes effect that is made at the row before it
+// [s]
 #define BEFORE_EVENT 1e-7
 
-// The row shown, to which undoing returns.
+// Notes the instant and row shown, to which undoing the input returns.
 static void remember_cursor(const session *s, session_input *in)
 {
     in->seen_at = s->now;
@@ -32,8 +33,9 @@ static void restore_cursor(session *s, const session_input *in)
     }
 }
 
-// The instant at which something done at the cursor takes effect: the cursor's own, or
-// one just before an event of the motion where the row shown is the one before it [s].
+// The instant at which an input at the cursor takes effect [s]: the cursor's own. Where
+// the row shown is the last one before an event of the motion, it is one just before the
+// event.
 static double effect_time(const session *s)
 {
     const trace *t = &s->run.trace;
@@ -71,8 +73,8 @@ static status add_input(session *s, const session_input *in, fault *f)
     }
     s->inputs = inputs;
 
-    // it takes the place of the first that could be redone, which comes back if the run
-    // fails
+    // it takes the place of the first input that could be redone, which comes back if the
+    // run fails
     session_input replaced = s->inputs[s->input_count];
     s->inputs[s->input_count++] = *in;
     session_seek(s, fmin(s->now, in->time));
@@ -101,8 +103,9 @@ static status set_given(parameters *p, int parameter, given_value v, fault *f)
     return parameter_set_number(p, parameter, v.number, f);
 }
 
-// Begins an input that gives a parameter another value at the cursor: from when on, and
-// what it is until then. *now are the parameters there.
+// Begins an input that gives a parameter another value at the cursor: fills in the
+// instant from which it takes effect and the value before. *now receives the parameters
+// there.
 static status begin_input(const session *s, int parameter, session_input *in,
                           parameters *now, fault *f)
 {
@@ -173,7 +176,8 @@ status session_change_from_start(session *s, const parameters *p, int parameter,
     return code;
 }
 
-// The first of several small steps: the run before them is kept as their ghost.
+// Makes the first of several small changes of a parameter: the run before it is kept as
+// the session's ghost.
 static status begin_adjusting(session *s, int parameter, given_value v, fault *f)
 {
     run_result before;
@@ -191,23 +195,26 @@ static status begin_adjusting(session *s, int parameter, given_value v, fault *f
     return code;
 }
 
-// Whether the last input gave this parameter a value at the cursor's instant; of
-// control.settings (".NAME=VALUE") the same number.
+// Whether the last input gave this parameter a value at the cursor's instant. A value
+// ".NAME=VALUE" of control.settings continues one of the same name only.
 static bool continues_last(const session *s, int parameter, given_value v)
 {
     if (s->input_count == 0) {
         return false;
     }
     const session_input *last = &s->inputs[s->input_count - 1];
-    size_t name = 0;
+    size_t name_length = 0; // with "." and "="
     if (v.text != NULL && v.text[0] == '.') {
-        name = strcspn(v.text, "=") + 1;
+        name_length = strcspn(v.text, "=") + 1;
     }
+    const bool same_name =
+        name_length == 0 || strncmp(last->text, v.text, name_length) == 0;
     return last->kind != SESSION_INPUT_PUSH && last->parameter == parameter &&
-           (name == 0 || strncmp(last->text, v.text, name) == 0) && last->time == s->now;
+           same_name && last->time == s->now;
 }
 
-// The same in the place of the last input, if this goes on with it; see session_adjust.
+// Gives a parameter a value at the cursor in the place of the last input, if that gave it
+// one there too; see session_adjust.
 static status adjust(session *s, int parameter, given_value v, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
@@ -215,7 +222,7 @@ static status adjust(session *s, int parameter, given_value v, fault *f)
         return begin_adjusting(s, parameter, v, f);
     }
 
-    // back at what it was before there is no input
+    // a value that leads back to the one before the last input undoes that input
     const session_input replaced = s->inputs[s->input_count - 1];
     parameters scratch = session_parameters_at(s, s->now);
     if (set_given(&scratch, parameter, v, NULL) == STATUS_OK &&
@@ -224,7 +231,8 @@ static status adjust(session *s, int parameter, given_value v, fault *f)
         return session_undo(s, f);
     }
 
-    // its place is taken; undoing leads to where the cursor was before the first of them
+    // replace the last input; undoing returns to the cursor before the first of the
+    // changes
     const int total = s->input_total;
     s->input_count--;
     status code = change(s, parameter, v, f);
@@ -285,14 +293,14 @@ status session_pull(session *s, double impulse, unsigned gesture, fault *f)
     return add_input(s, &in, f);
 }
 
-// Takes out the last input (step -1) or puts in the next (1), with all of its gesture,
-// and computes the run; they stay where they are if that fails.
+// Undoes the last input (step -1) or redoes the next one (1), with all inputs of its
+// gesture, and computes the run. If that fails the inputs stay as they were.
 static status move_inputs(session *s, int step, fault *f)
 {
     const session_input *in = s->inputs;
     const int before = s->input_count;
 
-    // until the inputs on both sides of the end are not of one gesture
+    // go on while the inputs before and after the new end belong to one gesture
     int count = before;
     do {
         count += step;

@@ -14,7 +14,7 @@
 
 // --- the cursor ---
 
-// The cursor has been here.
+// Notes that the cursor has been at its instant.
 static void note_seen(session *s)
 {
     s->seen = fmax(s->seen, s->now);
@@ -37,7 +37,7 @@ void session_seek(session *s, double time)
 {
     double end = session_end(s);
 
-    // rows to come may be waited for at an instant the cursor is at already
+    // the cursor may stand beyond the rows of a run that is still being computed
     if (s->computing != NULL && s->now > end) {
         end = s->now;
     }
@@ -50,8 +50,8 @@ void session_seek(session *s, double time)
     }
     s->row = trace_row_at(&s->run.trace, s->now);
 
-    // an instant beside a row's by rounding is the row's: a change there cuts no step
-    // anew
+    // an instant that differs from the next row's by rounding is that row's instant, so
+    // that a change there cuts no other step
     if (s->row + 1 < s->run.trace.row_count) {
         const double next = s->run.trace.rows[s->row + 1].time;
         if (next > s->now && same_instant(next, s->now)) {
@@ -118,7 +118,8 @@ action session_input_action(const session_input *in)
 
 enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
 
-// The scenario with the inputs in effect. Its actions are the only thing it owns.
+// Makes the scenario with the inputs in effect. It owns its list of actions; all else is
+// borrowed from the session's base.
 static status build_effective(const session *s, scenario *to, fault *f)
 {
     // the base without its script
@@ -131,8 +132,8 @@ static status build_effective(const session *s, scenario *to, fault *f)
         return fault_no_memory(f);
     }
 
-    // the script's actions, then the inputs among them: an input comes after what is due
-    // with it
+    // the script's actions, then the inputs: an input comes after the script's actions of
+    // the same instant
     for (int i = 0; i < s->base.action_count; i++) {
         scenario_insert_action(to, s->base.actions[i]);
     }
@@ -185,11 +186,11 @@ static bool end_computing(session *s)
     return s->run.summary.status == STATUS_STOPPED;
 }
 
-// Whether the files that parameters name, whose stamp is set, are those of the present
-// run.
+// Sets the stamp of the files and programs that parameters name; returns whether the
+// present run's stamp is the same.
 static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_TEXT])
 {
-    // before a consent no program is opened, but what is only read is looked at
+    // without a consent only data files are looked at, no program
     unsigned looked_at = ~0u;
     if (!p->code_allowed) {
         looked_at = outside_files();
@@ -198,8 +199,8 @@ static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_T
     return strcmp(stamp, s->outside) == 0;
 }
 
-// The digest of what a run is about to read from outside, which is the present run's
-// where that read the `same` files; empty where a consent is missing to read it.
+// Sets the digest of all that a run reads from outside: the present run's one if that
+// read the same files (`same`), and an empty one if there is no consent to read them.
 static void digest_of_outside(const session *s, const parameters *p, bool same,
                               char digest[SHA256_TEXT])
 {
@@ -213,8 +214,8 @@ static void digest_of_outside(const session *s, const parameters *p, bool same,
     }
 }
 
-// Waits for a run as long as the session does, and then for its first row. *run is what
-// there is of it. Returns the run, or NULL if it is over.
+// Waits for a run within the session's patience, and then for its first row. *run
+// receives what there is of it. Returns the run, or NULL if it is over.
 static background_run *wait_for_run(const session *s, background_run *c, run_result *run)
 {
     bool over = background_run_wait(c, fmin(s->patience, 1e6));
@@ -241,15 +242,15 @@ static status fault_of_empty_run(const run_result *run, fault *f)
     return fault_no_memory(f);
 }
 
-// Computes the run of a scenario, and resumes the present one where it can. A run that is
-// not there within the session's patience is left to its thread. On failure the present
-// run stays.
+// Computes the run of a scenario, from the present run's rows as far as both are the
+// same. A run that takes longer than the session's patience goes on in its thread. On
+// failure the present run stays.
 static status start_run(session *s, const scenario *effective, fault *f)
 {
     const parameters *p = &effective->parameters;
     const size_t rows = (size_t)expected_rows(p) + 1;
 
-    // what it reads from outside, and what it shares with the present one
+    // resume the present run if both read the same files, with the rows both share
     char stamp[SHA256_TEXT], digest[SHA256_TEXT];
     const bool same = outside_is_same(s, p, stamp);
     digest_of_outside(s, p, same, digest);
@@ -266,8 +267,7 @@ static status start_run(session *s, const scenario *effective, fault *f)
     }
     c = wait_for_run(s, c, &run);
 
-    // a run that diverges is worth looking at; one without a single row is not, and one
-    // that had no memory is not whole
+    // a run that diverges is kept, one without a single row is not
     loss_unless(run.summary.status != STATUS_NO_MEMORY);
     if (run.trace.row_count == 0) {
         const status code = fault_of_empty_run(&run, f);
@@ -284,7 +284,8 @@ static status start_run(session *s, const scenario *effective, fault *f)
     return STATUS_OK;
 }
 
-// Without a new run the present one stays, and is computed on if it was not finished.
+// Keeps the present run where there is no new one, and computes the rest of it if it was
+// not finished.
 static void go_on_with_present_run(session *s, bool unfinished)
 {
     if (unfinished && start_run(s, &s->effective, NULL) == STATUS_OK) {
@@ -297,14 +298,14 @@ static void go_on_with_present_run(session *s, bool unfinished)
 // Computes the run of the scenario with the inputs in effect.
 status session_compute(session *s, fault *f)
 {
-    // what it would be
+    // the scenario, whose run has to fit into memory
     scenario effective;
     status code = build_effective(s, &effective, f);
     if (code == STATUS_OK) {
         code = check_memory(&effective.parameters, f);
     }
 
-    // the machine is needed for the new run alone
+    // end the run that is being computed: the new one needs the machine
     bool unfinished = end_computing(s);
     if (code == STATUS_OK) {
         code = start_run(s, &effective, f);
@@ -334,18 +335,18 @@ bool session_follow(session *s)
         return false;
     }
 
-    // it is over
+    // the run is over
     if (background_run_wait(s->computing, 0)) {
         collect_run(s);
         session_seek(s, s->now);
         return true;
     }
 
-    // or has more rows
+    // or it has more rows
     size_t before = s->run.trace.row_count;
     bool more = background_run_look(s->computing, &s->run) > before;
 
-    // the largest force so far, which the run's summary has at the end only
+    // the largest force so far, as the summary of an unfinished run does not have it
     const trace *t = &s->run.trace;
     const size_t end = s->surveyed + ROWS_SURVEYED;
     for (; s->surveyed < t->row_count && s->surveyed < end; s->surveyed++) {

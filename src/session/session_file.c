@@ -17,7 +17,7 @@ enum { MOST_BYTES = 16 << 20, MOST_INPUTS = 20000 };
 
 // --- writing ---------------------------------------------------------------------------
 
-// A scenario's text, each line behind a bar.
+// Writes a scenario's name, then its text with "| " before each line.
 static void write_base(FILE *stream, const scenario *s)
 {
     text_stream text;
@@ -48,7 +48,7 @@ static void write_number(FILE *stream, const char *before, double value)
     fprintf(stream, "%s%s", before, text);
 }
 
-// A change as a line: its word, its instant, and what it changes.
+// Writes a change as a line: its word, its instant, and what it changes.
 static void write_input(FILE *stream, const session_input *in)
 {
     static const char *const words[] = {[SESSION_INPUT_START] = "start: ",
@@ -77,7 +77,8 @@ static parameters started_with(const run_origin *from)
     return p;
 }
 
-// The changes of a run, its cursor, and what else is to be kept of it.
+// Writes the lines of a run: its changes, its cursor, whether it is hidden, and the
+// digest of what it read from outside.
 static void write_run(FILE *stream, const kept_run *r)
 {
     for (int i = 0; i < r->from.input_count; i++) {
@@ -142,7 +143,8 @@ static status refuse_line(const session_reader *r, const char *what)
                      what);
 }
 
-// The scenario whose text is complete.
+// Ends the text of a scenario: parses it and makes it the base of the runs that follow.
+// Without such a text the base stays.
 static status end_base(session_reader *r)
 {
     if (r->text == NULL) {
@@ -191,7 +193,7 @@ static status begin_section(session_reader *r, const char *name)
     return STATUS_OK;
 }
 
-// Two numbers from 0 on, the second one behind a blank.
+// Reads two finite numbers, of which the first is not negative.
 static bool read_two_numbers(const char *text, double *first, double *second,
                              const char **rest)
 {
@@ -199,7 +201,7 @@ static bool read_two_numbers(const char *text, double *first, double *second,
            decimal_read(*rest, second, rest) && isfinite(*second);
 }
 
-// The parameter and the value of a change, as session_change would take them.
+// Reads the parameter and the value of a change and checks them, as session_change does.
 static status read_parameter_change(const session_reader *r, const run_origin *from,
                                     session_input *in, const char *text)
 {
@@ -218,8 +220,8 @@ static status read_parameter_change(const session_reader *r, const run_origin *f
     snprintf(in->text, sizeof in->text, "%s", value);
     const bool timed = in->kind == SESSION_INPUT_TIMED;
 
-    // among the values that the changes before it give; values that others must go with
-    // are checked with all of them, when the run is computed
+    // The value is checked beside those that the run starts with. Whether all values go
+    // together is checked when the run is computed.
     fault f = {0};
     if (timed && !rig_can_change(&scratch, in->parameter)) {
         return refuse_line(r, "a parameter that does not change during a run");
@@ -240,7 +242,7 @@ static kept_run *last_run(const session_reader *r)
     return &r->file->runs[r->file->run_count - 1];
 }
 
-// What a change does, from the text behind its word.
+// Reads an input of a known kind from the text behind its word.
 static status read_input(const session_reader *r, const run_origin *from,
                          session_input *in, const char *text)
 {
@@ -421,7 +423,7 @@ static const struct {
     {"view", false, take_view},
 };
 
-// Takes a line of any kind.
+// Takes a line of any kind: "| TEXT" of a scenario, or "word: rest".
 static status take_line(session_reader *r, char *line)
 {
     if (strncmp(line, "| ", 2) == 0) {
@@ -440,15 +442,15 @@ static status take_line(session_reader *r, char *line)
 
     // by its word
     for (size_t i = 0; i < sizeof line_kinds / sizeof *line_kinds; i++) {
-        const bool belongs = !line_kinds[i].of_run || last_run(r) != NULL;
-        if (belongs && strcmp(line, line_kinds[i].word) == 0) {
+        const bool belongs_here = !line_kinds[i].of_run || last_run(r) != NULL;
+        if (belongs_here && strcmp(line, line_kinds[i].word) == 0) {
             return line_kinds[i].take(r, rest);
         }
     }
     return refuse_line(r, "a line that does not belong here");
 }
 
-// Reads one line, without its end, of a file of so many bytes until then.
+// Reads one line, given without its end; `bytes` counts the file's bytes up to its end.
 static status read_session_line(session_reader *r, char *line, size_t bytes)
 {
     r->line++;
@@ -494,7 +496,7 @@ static status read_session_lines(session_reader *r, FILE *stream)
     return STATUS_OK;
 }
 
-// The whole file, or nothing.
+// Reads the whole file, or nothing of it.
 status session_file_read(session_file *file, const char *path, fault *f)
 {
     *file = (session_file){.baseline = -1};

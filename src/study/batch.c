@@ -4,14 +4,14 @@
 
 #include "src/base/clock.h"
 
-// What a thread keeps.
+// What each thread keeps from piece to piece.
 typedef struct batch_scratch {
     scenario made[RUN_TOGETHER];
     run_result results[RUN_TOGETHER];
     side_by_side *storage;
 } batch_scratch;
 
-// How many runs a piece of work has: the last one what is left.
+// The number of runs in a piece of work: the last piece has what is left of them.
 static size_t piece_length(const batch *b, size_t piece)
 {
     const size_t left = b->count - piece * b->together;
@@ -21,25 +21,26 @@ static size_t piece_length(const batch *b, size_t piece)
     return b->together;
 }
 
-// Computes the runs of a piece side by side.
+// Computes the runs of a piece side by side, and their summaries. A scenario that cannot
+// be made has a summary that says why.
 static void compute_runs(void *context, size_t piece, void *scratch, void *result)
 {
     const batch *b = context;
     const size_t length = piece_length(b, piece);
     batch_scratch *own = scratch;
     summary *summaries = result;
-    size_t place[RUN_TOGETHER]; // of each scenario that goes together
-    int begun = 0;
+    size_t place[RUN_TOGETHER]; // in the piece, of each scenario that was made
+    int made = 0;
 
-    // the times of this thread, making the scenarios included
-    const double start = clock_seconds(CLOCK_MONOTONIC),
-                 start_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+    // make the scenarios, which counts in the time of the runs
+    const double start = clock_seconds(CLOCK_MONOTONIC);
+    const double start_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (size_t i = 0; i < length; i++) {
         fault f = {.path = ""};
-        place[begun] = i;
-        if (b->make(b->context, piece * b->together + i, &own->made[begun], &f) ==
-            STATUS_OK) {
-            begun++;
+        const size_t number = piece * b->together + i;
+        place[made] = i;
+        if (b->make(b->context, number, &own->made[made], &f) == STATUS_OK) {
+            made++;
         } else {
             summary_init(&summaries[i]);
             summaries[i].status = f.code;
@@ -47,13 +48,13 @@ static void compute_runs(void *context, size_t piece, void *scratch, void *resul
         }
     }
 
-    run_together(own->made, begun, b->abandon, own->results, &own->storage);
-    for (int i = 0; i < begun; i++) {
+    run_together(own->made, made, b->abandon, own->results, &own->storage);
+    for (int i = 0; i < made; i++) {
         summaries[place[i]] = own->results[i].summary;
         run_finish(&own->results[i]);
     }
 
-    // the time cannot be attributed to single runs
+    // share the time equally: it cannot be attributed to single runs
     const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
     const double wall = clock_seconds(CLOCK_MONOTONIC) - start;
     for (size_t i = 0; i < length; i++) {
@@ -68,6 +69,7 @@ static void release_scratch(void *scratch)
     side_by_side_destroy(own->storage);
 }
 
+// Hands the summaries of a piece to the batch's `take`, or keeps them in its list.
 static status collect_runs(void *context, size_t piece, const void *result, fault *f)
 {
     const batch *b = context;
@@ -102,7 +104,7 @@ status batch_run(const batch *asked, int jobs, fault *f)
         threads = (size_t)jobs;
     }
 
-    // enough pieces for everybody, and no more threads than pieces
+    // pieces so small that every thread has one, and no more threads than pieces
     const size_t share = (b.count + threads - 1) / threads;
     if (share < 1) {
         b.together = 1;

@@ -17,9 +17,9 @@
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/study/batch.h"
 
-#define PATIENCE      1.0  // after so long three repetitions have to do [s]
-#define LONG_PATIENCE 20.0 // and then one [s]
-#define SLOWER        1.15 // by the medians
+#define PATIENCE      1.0  // computing time after which three repetitions are enough [s]
+#define LONG_PATIENCE 20.0 // and after which one is [s]
+#define SLOWER        1.15 // ratio of the medians above which a benchmark is slower
 
 // Computing time so far of the process and of those it has started and waited for [s].
 static double computing_time(void)
@@ -163,18 +163,20 @@ status bench_read(const char *path, double medians[BENCHMARKS], fault *f)
 
 double bench_window = 0.5;
 
-// What is done over and over: a scenario's run, or a batch of them.
+// Work whose time is measured: a scenario's run, or a batch of them.
 typedef struct timed_work {
     scenario scenario;
-    bool rows;    // of the run are kept
+    bool rows;    // the rows of the run are kept
     int threads;  // of the batch
-    double steps; // that its runs have made
+    double steps; // of all runs of the batch
 
-    double duration;      // of the run [s]
-    double seconds, wall; // that a call took of computing time, and all by the clock [s]
+    double duration; // of the run [s]
+    double seconds;  // computing time of a call [s]
+    double wall;     // time of all calls by the clock [s]
 } timed_work;
 
-// Does it with the benchmark's scenario.
+// Measures the time of work with the benchmark's scenario, which is called again and
+// again until `least` seconds have passed.
 static status measure_work(const benchmark *b, status (*work)(void *context),
                            timed_work *t, double least, fault *f)
 {
@@ -237,22 +239,22 @@ static status run_batch(void *context)
     return batch_run(&runs, ((const timed_work *)context)->threads, NULL);
 }
 
-// Of the batch, number: 0: time steps of all runs together for a second by the clock, on
-// as many threads as processors [1/s]. Else the computing time of a run on one thread, in
-// vectors of at most so many arms [us].
+// Measures the batch. With the number 0: time steps of all runs in a second by the clock,
+// on as many threads as processors [1/s]. Else computing time of a run on one thread, in
+// vectors of at most that number of arms [us].
 static status measure_batch(const benchmark *b, double *value, fault *f)
 {
-    const bool all = b->number == 0;
+    const bool all_processors = b->number == 0;
     timed_work t = {.threads = 1};
     double window = bench_window;
-    if (all) {
+    if (all_processors) {
         t.threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
         window = 1e-9; // once is enough
     }
     taylor_limit_width(b->number);
     const status code = measure_work(b, run_batch, &t, window, f);
     taylor_limit_width(0);
-    if (all) {
+    if (all_processors) {
         *value = t.steps / t.wall;
     } else {
         *value = 1e6 * t.seconds / BATCH_RUNS;
@@ -262,8 +264,8 @@ static status measure_batch(const benchmark *b, double *value, fault *f)
 
 // --- the program -----------------------------------------------------------------------
 
-// Runs the program with the words in the current folder, without what it prints, and
-// waits for it.
+// Runs the program with these arguments in a folder, its output thrown away, and waits
+// for its end. False if it fails.
 static bool run_example(const char *program, const char *folder, const char *words)
 {
     const pid_t child = fork();
@@ -292,8 +294,9 @@ static int remove_entry(const char *path, const struct stat *about, int kind,
     return remove(path);
 }
 
-// Computing time of the program with these words, in a folder that is removed, divided
-// by number, in the benchmark's unit: s, ms or us.
+// Measures the computing time of the program with the benchmark's arguments, in a folder
+// of its own that is removed, divided by the benchmark's number, in its unit: s, ms or
+// us.
 static status measure_program(const benchmark *b, double *value, fault *f)
 {
     const char *place = getenv("TMPDIR");

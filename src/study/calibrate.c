@@ -9,12 +9,13 @@
 #include "src/study/result_rows.h"
 
 #define SHORTEST_PRESS 5.0 // [s]
-#define WINDOW_SHARE   0.4 // of it, its last part, over which the readings are averaged
+#define WINDOW_SHARE   0.4 // last part of a press over which the readings are averaged
 
 // --- one press -------------------------------------------------------------------------
 
-// The scenario under a constant command. It starts where the arm touches the wall: an
-// impact would leave a beam without damping ringing, and the rig off scale.
+// Makes the scenario of a press under a constant command [V]. The arm starts at rest at
+// the wall: an impact would make a beam without damping vibrate for ever, and the force
+// sensor leave its range.
 static status pressing(const scenario *s, double command, int number, scenario *under,
                        fault *f)
 {
@@ -31,13 +32,14 @@ static status pressing(const scenario *s, double command, int number, scenario *
         {PARAMETER_INDEX(run.duration), fmax(p->run.duration, SHORTEST_PRESS)},
     };
 
-    // no script, nothing that another law is told, and a seed of its own for each press
+    // without the script's actions, and with another seed for each press
     scenario bare = *s;
     bare.action_count = 0;
     return scenario_with(&bare, changes, sizeof changes / sizeof *changes, under, f);
 }
 
-// Mean and standard deviation of readings, each weighed with the time for which it stood.
+// Sums for the mean and standard deviation of readings, each weighted with the time for
+// which it stood.
 typedef struct average {
     double weight, sum, squares;
 } average;
@@ -66,6 +68,9 @@ static double stiffness(const parameters *p, double force, double angle)
     return force * (p->arm.length / 2) / (2 * angle);
 }
 
+// Averages force and angle over the last part of a run, and finds the stiffness from
+// them. The drift is the stiffness in the second half of that part over the one in the
+// first, less 1: 0 of an arm at rest.
 static void average_point(const parameters *p, const trace *t, double command,
                           calibration_point *point)
 {
@@ -92,18 +97,20 @@ static void average_point(const parameters *p, const trace *t, double command,
     for (int half = 0; half < 2; half++) {
         k2[half] = stiffness(p, average_mean(&force[half]), average_mean(&angle[half]));
     }
-    double f = average_mean(&whole_force), x = average_mean(&whole_angle);
+    const double mean_force = average_mean(&whole_force);
+    const double mean_angle = average_mean(&whole_angle);
+    const double mean_k2 = stiffness(p, mean_force, mean_angle);
     *point = (calibration_point){.command = command,
-                                 .force = f,
-                                 .angle = x,
-                                 .k2 = stiffness(p, f, x),
-                                 .k2_over_arm = stiffness(p, f, x) / p->arm.k2,
+                                 .force = mean_force,
+                                 .angle = mean_angle,
+                                 .k2 = mean_k2,
+                                 .k2_over_arm = mean_k2 / p->arm.k2,
                                  .force_spread = average_spread(&whole_force),
                                  .angle_spread = average_spread(&whole_angle),
                                  .drift = k2[1] / k2[0] - 1};
 }
 
-// One press: a run, its averages, and whether the arm pressed at all.
+// Runs one press and averages its readings. It is a fault if the arm does not press.
 static status press_once(const scenario *s, double command, int number,
                          run_monitor *monitor, calibration_point *point, fault *f)
 {

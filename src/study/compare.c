@@ -34,7 +34,8 @@ const compare_quantity compare_quantities[COMPARE_QUANTITIES] = {COMPARED(ROW)};
 
 // --- rows ------------------------------------------------------------------------------
 
-// What full knowledge of the state could have made of the run's first impact.
+// The bounds for every controller after the run's first impact: the least peak [N] and
+// the least settling time [s] (best_stop.h); NaN where they are not known.
 static void find_best(const scenario *s, const run_result *result, double *peak,
                       double *settling)
 {
@@ -61,8 +62,8 @@ static void find_best(const scenario *s, const run_result *result, double *peak,
     }
 }
 
-// The least time from the start that any controller takes, pressing no harder than the
-// run did.
+// The least time [s] that any controller takes from the start until the force is settled,
+// with no larger peak than the run's; NaN where it is not known.
 static double find_least_time(const scenario *s, const run_result *result)
 {
     const parameters *p = &s->parameters;
@@ -84,7 +85,8 @@ compare_row compare_row_of(const scenario *s, const run_result *result)
 
     find_best(s, result, &peak, &settling);
 
-    // on the rig what is over is over the command, else over the steady force
+    // under a commanded force the overshoot is over the command, else over the steady
+    // force
     double overshoot = m->force_overshoot_percent;
     if (commanded) {
         overshoot = 100 * m->force_over_command_N / command;
@@ -213,48 +215,45 @@ static void write_heading(const compare_table *t, int column, bool page,
     snprintf(text, PARAMETER_TEXT_SIZE, format, name, unit);
 }
 
-// The cell of a row, of row -1 the heading, which a text may have room for; NULL in a
-// column that is not shown. A varied parameter is headed by its path without the group,
-// for which there is no room.
+enum { HEADING = -1 }; // the row of the headings
+
+// The text of a cell; NULL in a column that is not shown. `text` is room for a cell that
+// is made up here. A varied parameter is headed by its path without the group, for which
+// there is no room.
 static const char *comparison_cell(const compare_table *t, int row, int column, bool page,
                                    char text[PARAMETER_TEXT_SIZE])
 {
-    const compare_row *of = row < 0 ? NULL : &t->rows[row];
-    const int v = column - NAMES, k = v - t->varied_count;
-    if (column < NAMES) {
-        if (of == NULL) {
-            if (column == LAW) {
-                return "law";
-            }
-            return "scenario";
-        }
-        if (column == SCENARIO) {
-            return of->scenario;
-        }
-        return of->law;
+    // the row's run, the varied parameter, and the quantity from 0 on
+    const bool is_heading = row == HEADING;
+    const compare_row *run = is_heading ? NULL : &t->rows[row];
+    const int varied = column - NAMES, quantity = varied - t->varied_count;
+    if (column == SCENARIO) {
+        return is_heading ? "scenario" : run->scenario;
     }
-    if (k >= 0 && t->hidden[k]) {
+    if (column == LAW) {
+        return is_heading ? "law" : run->law;
+    }
+    if (quantity >= 0 && t->hidden[quantity]) {
         return NULL;
     }
 
-    // a value, or "peak/N", for a page "peak [N]"
-    if (of == NULL) {
+    if (is_heading) {
         write_heading(t, column, page, text);
-    } else if (k < 0) {
+    } else if (quantity < 0) {
         char value[PARAMETER_TEXT_SIZE];
-        format_varied(t, row, v, value, sizeof value);
-        snprintf(text, PARAMETER_TEXT_SIZE, "%.100s%s", value,
-                 of->idle[v] != NULL ? " (no effect)" : "");
+        const char *remark = run->idle[varied] != NULL ? " (no effect)" : "";
+        format_varied(t, row, varied, value, sizeof value);
+        snprintf(text, PARAMETER_TEXT_SIZE, "%.100s%s", value, remark);
     } else {
-        decimal_print(text, PARAMETER_TEXT_SIZE, value_format(of->values[k], page),
-                      of->values[k]);
+        const double value = run->values[quantity];
+        decimal_print(text, PARAMETER_TEXT_SIZE, value_format(value, page), value);
     }
-    if (k < 0 || page) {
+    if (quantity < 0 || page) {
         return text;
     }
 
-    // a star, or the room for one
-    if (of != NULL && marked(t, row, k)) {
+    // behind a quantity a star if it differs from the reference, else the room for one
+    if (!is_heading && marked(t, row, quantity)) {
         return strcat(text, "*");
     }
     return strcat(text, " ");
@@ -266,28 +265,28 @@ void compare_text(FILE *stream, const compare_table *t, bool page)
     int widths[MOST_COLUMNS];
     char text[PARAMETER_TEXT_SIZE];
 
-    // names and what was varied are as wide as they have to be, names to the left
-    for (int c = 0; c < columns; c++) {
-        if (c < NAMES + t->varied_count) {
-            widths[c] = 0;
-        } else {
-            widths[c] = 12;
-        }
-        for (int i = -1; i < t->count && c < NAMES + t->varied_count; i++) {
-            const int length = (int)strlen(comparison_cell(t, i, c, false, text));
+    // Quantities are 12 columns wide; names and varied values are as wide as the widest
+    // of them. A negative width aligns the names to the left.
+    const int first_quantity = NAMES + t->varied_count;
+    const bool for_page = false;
+    for (int c = 0; c < first_quantity; c++) {
+        widths[c] = 0;
+        for (int i = HEADING; i < t->count; i++) {
+            const int length = (int)strlen(comparison_cell(t, i, c, for_page, text));
             if (length > widths[c]) {
                 widths[c] = length;
             }
         }
         if (c < NAMES) {
-            widths[c] *= -1;
-        } else {
-            widths[c] *= 1;
+            widths[c] = -widths[c];
         }
     }
+    for (int c = first_quantity; c < columns; c++) {
+        widths[c] = 12;
+    }
 
-    // the headings, then a line each
-    for (int i = -1; i < t->count; i++) {
+    // the headings, then a line for each run
+    for (int i = HEADING; i < t->count; i++) {
         int shown = 0;
         for (int c = 0; c < columns; c++) {
             const char *cell = comparison_cell(t, i, c, page, text);

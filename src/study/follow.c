@@ -11,8 +11,8 @@ const double follow_frequencies[FOLLOW_FREQUENCIES] = {0.2, 0.5, 1, 2, 4, 8, 15,
 const char *const follow_laws[FOLLOW_LAWS] = {"hybrid",     "force-pd", "impedance",
                                               "admittance", "optimal",  "observer"};
 
-#define SETTLED 3.0 // when impact and transients are over [s]
-#define WATCHED 2.0 // from then on at least, in whole periods [s]
+#define SETTLED 3.0 // instant at which impact and transients are over [s]
+#define WATCHED 2.0 // least time from then on that is evaluated, in whole periods [s]
 
 // exp(i angle).
 static double complex unit_phasor(double angle)
@@ -20,9 +20,9 @@ static double complex unit_phasor(double angle)
     return inline_cos(angle) + (double complex)I * inline_sin(angle);
 }
 
-// The force's part at a frequency [Hz], as that of a sine that begins at 0 s: the mean of
-// the rows times exp(-i w t) over whole periods, by the trapezoidal rule.
-static double complex part_of(const trace *t, double frequency, double until)
+// The complex amplitude of the force at a frequency [Hz], referred to sin(w t): 2 i times
+// the mean of force(t) exp(-i w t) over whole periods, by the trapezoidal rule.
+static double complex amplitude_of(const trace *t, double frequency, double until)
 {
     const double w = 2 * M_PI * frequency;
     double complex sum = 0;
@@ -34,19 +34,20 @@ static double complex part_of(const trace *t, double frequency, double until)
             sum += (b->time - a->time) / 2 * both;
         }
     }
-    const double complex sine = 2 * unit_phasor(M_PI / 2);
-    return sine * sum / (until - SETTLED);
+    const double complex twice_i = 2 * unit_phasor(M_PI / 2);
+    return twice_i * sum / (until - SETTLED);
 }
 
-// One run: the force's part at a frequency, of a wave of the set-point or of the wall.
-// NaN if it fails.
-static status part_in_run(const scenario *s, const char *law, double frequency, bool wall,
-                          run_monitor *monitor, double complex *part, fault *f)
+// Runs a law with a sine in the wall's place or, without `wall`, in the commanded force,
+// and finds the force's complex amplitude at its frequency; NaN if the run fails.
+static status measure_amplitude(const scenario *s, const char *law, double frequency,
+                                bool wall, run_monitor *monitor,
+                                double complex *amplitude, fault *f)
 {
     const double until = SETTLED + ceil(WATCHED * frequency) / frequency;
     const double force = s->parameters.control.force;
     scenario changed;
-    *part = (double)NAN;
+    *amplitude = (double)NAN;
 
     // either the wall moves or the set-point does
     const double wave = wall ? 0 : FOLLOW_WAVE * force;
@@ -67,7 +68,7 @@ static status part_in_run(const scenario *s, const char *law, double frequency, 
     const run_options options = {.keep_trace = true, .monitor = monitor};
     const status code = run_scenario_with(&changed, &options, &result);
     if (code == STATUS_OK) {
-        *part = part_of(&result.trace, frequency, until);
+        *amplitude = amplitude_of(&result.trace, frequency, until);
     }
     if (code == STATUS_STOPPED || code == STATUS_NO_MEMORY) {
         return fault_set(f, code, "%s", status_text(code));
@@ -112,6 +113,9 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
         study->points[i / FOLLOW_FREQUENCIES][k] =
             point_of(follow_frequencies[k], (double)NAN);
     }
+
+    // two runs for each law and frequency: with a wave of the commanded force, then with
+    // a wall that moves
     double phase_before = 0;
     for (; study->done < FOLLOW_RUNS; study->done++) {
         const int law = study->done / 2 / FOLLOW_FREQUENCIES,
@@ -119,15 +123,16 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
         const bool wall = study->done % 2 != 0;
         const double frequency = follow_frequencies[k];
         follow_point *point = &study->points[law][k];
-        double complex part;
-        TRY(part_in_run(s, follow_laws[law], frequency, wall, monitor, &part, f));
+        double complex amplitude;
+        TRY(measure_amplitude(s, follow_laws[law], frequency, wall, monitor, &amplitude,
+                              f));
         if (wall) {
-            point->shaken = cabs(part) / FOLLOW_WALL;
+            point->shaken = cabs(amplitude) / FOLLOW_WALL;
         } else {
-            *point = point_of(frequency, part / (FOLLOW_WAVE * p->control.force));
+            *point = point_of(frequency, amplitude / (FOLLOW_WAVE * p->control.force));
         }
 
-        // a phase goes on from the one at the frequency before
+        // the phase falls with frequency: one that jumps up has passed -180 degrees
         if (k > 0 && point->phase > phase_before + 180) {
             point->phase -= 360;
         }

@@ -19,19 +19,19 @@ typedef struct draft {
 } draft;
 
 // A number of [low, high), evenly spread.
-static double even(draft *d, double low, double high)
+static double draw_uniform(draft *d, double low, double high)
 {
     return low + (high - low) * random_uniform(&d->chance);
 }
 
 // A number of [low, high) whose logarithm is evenly spread.
-static double logarithmic(draft *d, double low, double high)
+static double draw_logarithmic(draft *d, double low, double high)
 {
     return low * plain_exp(plain_log(high / low) * random_uniform(&d->chance));
 }
 
 // A number of 0 ... count - 1.
-static int one_of(draft *d, int count)
+static int draw_below(draft *d, int count)
 {
     return (int)random_below(&d->chance, (uint64_t)count);
 }
@@ -53,36 +53,36 @@ static __attribute__((format(printf, 2, 3))) char *add(draft *d, const char *for
 
 static void draw_giving_wall(draft *d)
 {
-    const char *contact = one_of(d, 2) == 1 ? "hunt-crossley" : "kelvin-voigt";
+    const char *contact = draw_below(d, 2) == 1 ? "hunt-crossley" : "kelvin-voigt";
     add(d, "wall.contact=%s", contact);
-    add(d, "wall.stiffness=%.6g", logarithmic(d, 200, 1e6));
+    add(d, "wall.stiffness=%.6g", draw_logarithmic(d, 200, 1e6));
 }
 
 static void draw_light_face(draft *d)
 {
     add(d, "wall.contact=kelvin-voigt");
-    add(d, "wall.stiffness=%.6g", logarithmic(d, 200, 1e6));
-    add(d, "wall.mass=%.6g", logarithmic(d, 0.005, 0.1));
+    add(d, "wall.stiffness=%.6g", draw_logarithmic(d, 200, 1e6));
+    add(d, "wall.mass=%.6g", draw_logarithmic(d, 0.005, 0.1));
 }
 
 static void draw_heavy_face(draft *d)
 {
     add(d, "wall.contact=kelvin-voigt");
-    add(d, "wall.stiffness=%.6g", logarithmic(d, 500, 1e5));
-    add(d, "wall.damping=%.3g", logarithmic(d, 1, 20));
-    add(d, "wall.mass=%.3g", logarithmic(d, 0.05, 0.3));
+    add(d, "wall.stiffness=%.6g", draw_logarithmic(d, 500, 1e5));
+    add(d, "wall.damping=%.3g", draw_logarithmic(d, 1, 20));
+    add(d, "wall.mass=%.3g", draw_logarithmic(d, 0.05, 0.3));
 }
 
 static void draw_soft_wall(draft *d)
 {
     add(d, "wall.contact=kelvin-voigt");
-    add(d, "wall.stiffness=%.6g", logarithmic(d, 200, 5000));
-    add(d, "wall.damping=%.3g", logarithmic(d, 1, 20));
+    add(d, "wall.stiffness=%.6g", draw_logarithmic(d, 200, 5000));
+    add(d, "wall.damping=%.3g", draw_logarithmic(d, 1, 20));
 }
 
 static void draw_restitution(draft *d)
 {
-    add(d, "wall.restitution=%.6g", even(d, 0, 0.5));
+    add(d, "wall.restitution=%.6g", draw_uniform(d, 0, 0.5));
 }
 
 static void draw_flat_wall(draft *d)
@@ -94,15 +94,15 @@ static void draw_flat_wall(draft *d)
 
 static void draw_tip_mass(draft *d)
 {
-    add(d, "arm.tip_mass=%.6g", even(d, 0.02, 0.1));
+    add(d, "arm.tip_mass=%.6g", draw_uniform(d, 0.02, 0.1));
 }
 
 static void draw_links(draft *d)
 {
-    const int links = 3 + one_of(d, 6);
+    const int links = 3 + draw_below(d, 6);
     add(d, "arm.links=%d", links);
     add(d, "arm.damping_ratio=0.01");
-    if (one_of(d, 2) == 1) {
+    if (draw_below(d, 2) == 1) {
         add(d, "belief.links=%d", links);
     }
 }
@@ -110,99 +110,100 @@ static void draw_links(draft *d)
 static void draw_hub_spring(draft *d)
 {
     add(d, "arm.hub_joint=spring");
-    add(d, "arm.k1=%.4g", even(d, 80, 150));
-    add(d, "belief.hub_spring_factor=%.4g", one_of(d, 2) == 1 ? 100.0 : 1.0);
+    add(d, "arm.k1=%.4g", draw_uniform(d, 80, 150));
+    add(d, "belief.hub_spring_factor=%.4g", draw_below(d, 2) == 1 ? 100.0 : 1.0);
 }
 
 static void draw_length(draft *d)
 {
-    add(d, "arm.length=%.4g", d->around->arm.length * even(d, 0.75, 1.25));
+    add(d, "arm.length=%.4g", d->around->arm.length * draw_uniform(d, 0.75, 1.25));
 }
 
 static void draw_joint_stiffness(draft *d)
 {
-    add(d, "arm.k2=%.4g", d->around->arm.k2 * logarithmic(d, 0.5, 2.5));
+    add(d, "arm.k2=%.4g", d->around->arm.k2 * draw_logarithmic(d, 0.5, 2.5));
 }
 
 static void draw_stiffening(draft *d)
 {
-    add(d, "arm.stiffening=%.3g", even(d, 0, 5));
+    add(d, "arm.stiffening=%.3g", draw_uniform(d, 0, 5));
 }
 
 static void draw_hub_inertia(draft *d)
 {
-    add(d, "arm.hub_inertia=%.4g", d->around->arm.hub_inertia * logarithmic(d, 0.7, 4));
+    add(d, "arm.hub_inertia=%.4g",
+        d->around->arm.hub_inertia * draw_logarithmic(d, 0.7, 4));
 }
 
 // --- what is believed of them ----------------------------------------------------------
 
 static void draw_believed_mass(draft *d)
 {
-    add(d, "belief.mass_factor=%.4g", even(d, 0.85, 1.15));
+    add(d, "belief.mass_factor=%.4g", draw_uniform(d, 0.85, 1.15));
 }
 
 static void draw_believed_inertia(draft *d)
 {
-    add(d, "belief.inertia_factor=%.4g", even(d, 0.8, 1.2));
+    add(d, "belief.inertia_factor=%.4g", draw_uniform(d, 0.8, 1.2));
 }
 
 static void draw_believed_friction(draft *d)
 {
-    add(d, "belief.friction_factor=%.4g", even(d, 0.7, 1.3));
+    add(d, "belief.friction_factor=%.4g", draw_uniform(d, 0.7, 1.3));
 }
 
 static void draw_believed_torque(draft *d)
 {
-    add(d, "belief.torque_factor=%.4g", even(d, 0.85, 1.15));
+    add(d, "belief.torque_factor=%.4g", draw_uniform(d, 0.85, 1.15));
 }
 
 static void draw_believed_stiffness(draft *d)
 {
-    add(d, "belief.k2_factor=%.4g", even(d, 0.75, 1.25));
+    add(d, "belief.k2_factor=%.4g", draw_uniform(d, 0.75, 1.25));
 }
 
 static void draw_believed_wall(draft *d)
 {
-    add(d, "belief.wall_error=%.4g", even(d, -0.03, 0.03));
+    add(d, "belief.wall_error=%.4g", draw_uniform(d, -0.03, 0.03));
 }
 
 // --- motor, start and what comes from outside ------------------------------------------
 
 static void draw_stiction(draft *d)
 {
-    add(d, "motor.stiction=%.4g", even(d, 0.01, 0.09));
-    add(d, "belief.friction_factor=%.4g", logarithmic(d, 0.5, 1.6));
+    add(d, "motor.stiction=%.4g", draw_uniform(d, 0.01, 0.09));
+    add(d, "belief.friction_factor=%.4g", draw_logarithmic(d, 0.5, 1.6));
 }
 
 static void draw_inductance(draft *d)
 {
-    add(d, "motor.inductance=%.3g", even(d, 0.02, 0.15));
+    add(d, "motor.inductance=%.3g", draw_uniform(d, 0.02, 0.15));
 }
 
 static void draw_start(draft *d)
 {
-    add(d, "initial.angle=%.4g", d->around->wall.angle - logarithmic(d, 0.07, 0.5));
+    add(d, "initial.angle=%.4g", d->around->wall.angle - draw_logarithmic(d, 0.07, 0.5));
 }
 
 static void draw_push(draft *d)
 {
-    d->made->push = even(d, -0.06, 0.06);
-    d->made->push_time = even(d, 0.9, 1.1);
+    d->made->push = draw_uniform(d, -0.06, 0.06);
+    d->made->push_time = draw_uniform(d, 0.9, 1.1);
 }
 
 // --- sensors and computer --------------------------------------------------------------
 
 static void draw_rate(draft *d)
 {
-    d->rate = logarithmic(d, 100, 1000);
+    d->rate = draw_logarithmic(d, 100, 1000);
     add(d, "control.rate=%.6g", d->rate);
 }
 
-// Told up to two periods, untold to one.
+// A delay of up to two periods that the law knows, or of up to one that it does not.
 static void draw_delay(draft *d)
 {
-    const bool known = one_of(d, 2) == 1;
-    add(d, "control.delay_periods=%.6g", even(d, 0, known ? 2 : 1));
+    const bool known = draw_below(d, 2) == 1;
+    add(d, "control.delay_periods=%.6g", draw_uniform(d, 0, known ? 2 : 1));
     if (!known) {
         add(d, "belief.delay_error=-2");
     }
@@ -210,14 +211,14 @@ static void draw_delay(draft *d)
 
 static void draw_scattered_samples(draft *d)
 {
-    d->jitter = even(d, 0, 1) * 1e-3;
+    d->jitter = draw_uniform(d, 0, 1) * 1e-3;
     d->jitter_setting = add(d, "control.jitter=%.6g", d->jitter);
-    add(d, "sensor.accelerometer=%s", one_of(d, 2) == 1 ? "true" : "false");
+    add(d, "sensor.accelerometer=%s", draw_below(d, 2) == 1 ? "true" : "false");
 }
 
 static void draw_jitter(draft *d)
 {
-    d->jitter = even(d, 0, 2.5e-3);
+    d->jitter = draw_uniform(d, 0, 2.5e-3);
     d->jitter_setting = add(d, "control.jitter=%.3g", d->jitter);
 }
 
@@ -232,29 +233,29 @@ static void keep_jitter_within_period(draft *d)
 
 static void draw_tip_sensor(draft *d)
 {
-    add(d, "sensor.fsr_gain_error=%.6g", even(d, -0.03, 0.03));
-    add(d, "sensor.fsr_offset=%.6g", even(d, -0.01, 0.01));
-    add(d, "sensor.fsr_hysteresis=%.6g", even(d, 0, 0.03));
+    add(d, "sensor.fsr_gain_error=%.6g", draw_uniform(d, -0.03, 0.03));
+    add(d, "sensor.fsr_offset=%.6g", draw_uniform(d, -0.01, 0.01));
+    add(d, "sensor.fsr_hysteresis=%.6g", draw_uniform(d, 0, 0.03));
 }
 
 static void draw_converters(draft *d)
 {
-    add(d, "sensor.adc_bits=%d", 10 + 2 * one_of(d, 2));
-    add(d, "sensor.dac_bits=%d", 8 + 2 * one_of(d, 3));
-    add(d, "sensor.fsr_noise=%.3g", even(d, 0.02, 0.06));
+    add(d, "sensor.adc_bits=%d", 10 + 2 * draw_below(d, 2));
+    add(d, "sensor.dac_bits=%d", 8 + 2 * draw_below(d, 3));
+    add(d, "sensor.fsr_noise=%.3g", draw_uniform(d, 0.02, 0.06));
 }
 
 static void draw_rise_time(draft *d)
 {
-    add(d, "sensor.fsr_rise_time=%.3g", logarithmic(d, 0.0005, 0.01));
+    add(d, "sensor.fsr_rise_time=%.3g", draw_logarithmic(d, 0.0005, 0.01));
 }
 
 static void draw_hub_sensors(draft *d)
 {
-    add(d, "sensor.encoder_gain_error=%.6g", even(d, -0.05, 0.05));
-    add(d, "sensor.encoder_offset=%.6g", even(d, -0.02, 0.02));
-    add(d, "sensor.tachometer_gain_error=%.6g", even(d, -0.05, 0.05));
-    add(d, "sensor.tachometer_offset=%.6g", even(d, -0.02, 0.02));
+    add(d, "sensor.encoder_gain_error=%.6g", draw_uniform(d, -0.05, 0.05));
+    add(d, "sensor.encoder_offset=%.6g", draw_uniform(d, -0.02, 0.02));
+    add(d, "sensor.tachometer_gain_error=%.6g", draw_uniform(d, -0.05, 0.05));
+    add(d, "sensor.tachometer_offset=%.6g", draw_uniform(d, -0.02, 0.02));
     add(d, "sensor.encoder_counts=1000");
     add(d, "sensor.tachometer_noise=0.05");
 }
@@ -352,12 +353,13 @@ drawn_case drawn_case_of(const parameters *around, uint64_t seed)
     draft d = {.made = &c, .around = around};
     random_seed(&d.chance, seed);
 
-    // two or three kinds, each by the next ticket whose subject is still as it was
+    // two or three kinds: draw tickets in random order, and skip those whose subject
+    // another error has changed
     int kind_of[MOST_TICKETS];
     size_t order[MOST_TICKETS];
     const size_t tickets = list_tickets(kind_of);
     random_permutation(&d.chance, order, tickets);
-    const int wanted = 2 + one_of(&d, LAW_ERRORS_A_CASE - 1);
+    const int wanted = 2 + draw_below(&d, LAW_ERRORS_A_CASE - 1);
     unsigned changed = 0;
     for (size_t i = 0; i < tickets && c.error_count < wanted; i++) {
         const int kind = kind_of[order[i]];
@@ -372,12 +374,13 @@ drawn_case drawn_case_of(const parameters *around, uint64_t seed)
 
     keep_jitter_within_period(&d);
 
-    // noise of its own
+    // every case has its own noise
     add(&d, "control.seed=%llu", (unsigned long long)seed);
     return c;
 }
 
-// The base's actions, and among them a push.
+// Lists the base's actions in the order of time, and with `pushed` the case's push among
+// them. Returns how many there are.
 static int list_actions(const scenario *base, const drawn_case *c, bool pushed,
                         action *actions)
 {

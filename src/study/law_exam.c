@@ -8,15 +8,15 @@
 #include "src/tables/parameters.h"
 #include "src/study/batch.h"
 
-// The bounds, as shares of the command, in seconds and as a ratio.
-#define MOST_OVERSHOOT       30.0 // [%]
+// The bounds that a run has to keep.
+#define MOST_OVERSHOOT       30.0 // of the commanded force [%]
 #define MOST_SETTLING        0.3  // [s]
 #define MOST_SETTLING_LOSING 0.6  // of a run that lost contact [s]
-#define MOST_ERROR           5.0  // [%]
-#define MOST_LATENESS        1.5
+#define MOST_ERROR           5.0  // steady error, of the commanded force [%]
+#define MOST_LATENESS        1.5  // time of first contact over open-loop's
 
-// A run of the exam: a law, or open-loop's for the time of first contact (law -1), in a
-// case at a force, with its push or without.
+// A run of the exam: a law in a case at a force, with the case's push or without; or,
+// with law -1, open-loop, which gives the time of first contact to compare with.
 typedef struct exam_run {
     size_t of_case;
     int law, force;
@@ -61,8 +61,8 @@ void law_exam_finish(law_exam *e)
 
 // --- the runs --------------------------------------------------------------------------
 
-// Lists them, case by case: open-loop's, then each law at each force as it is and, where
-// there is a push, without it. `runs` NULL counts them.
+// Lists the runs, case by case: open-loop's, then each law's at each force, and where the
+// case has a push, the same without it. With `runs` NULL it only counts them.
 static size_t list_runs(const law_exam *e, exam_run *runs)
 {
     size_t count = 0;
@@ -141,8 +141,8 @@ static status report_runs(void *context, bool over, fault *f)
 
 // --- judgement -------------------------------------------------------------------------
 
-// Of a run and the same without a push, where open-loop touches the wall at that time
-// [s].
+// Judges a run by the bounds. `calm` is the same run without its push, by whose overshoot
+// it is judged; `open_loop` the time at which open-loop touches the wall [s].
 static exam_verdict judge_law_run(const drawn_case *c, double force, double open_loop,
                                   const summary *s, const summary *calm)
 {
@@ -227,7 +227,7 @@ status law_exam_run(law_exam *e, const exam_request *asked, const exam_options *
         e->cases[i] = drawn_case_of(&asked->base->parameters, asked->seed + i);
     }
 
-    // what is to be run
+    // the list of runs, with room for each one's actions and summary
     const size_t runs = list_runs(e, NULL);
     const size_t room = (size_t)asked->base->action_count + 1;
     SCOPED(exam_work_finish)
@@ -260,6 +260,7 @@ status law_exam_run(law_exam *e, const exam_request *asked, const exam_options *
 
 // --- shares ----------------------------------------------------------------------------
 
+// Whether a case has a kind of error; every case has the kind -1.
 static bool has_error(const drawn_case *c, int kind)
 {
     bool has = kind < 0;

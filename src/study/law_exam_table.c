@@ -49,10 +49,10 @@ typedef struct exam_pairs {
     double points, low, high; // what that is of all cases, with its 95 % interval [%]
 } exam_pairs;
 
-// The cases of a law at a force, and how they went before: by rows of another exam, or,
-// where there are none, under the first law of this one.
+// The cases of a law at a force, and which of them were within the bounds before: by the
+// rows of another exam, or without such rows under the first law of this exam.
 typedef struct case_marks {
-    const char *rows; // '0' or '1' a case; NULL: none
+    const char *rows; // '1' for each case within the bounds, else '0'; NULL: none
     const law_exam *exam;
     int law, force;
 } case_marks;
@@ -228,7 +228,8 @@ static void print_kinds(FILE *stream, const law_exam *e, int law)
     }
 }
 
-// What each law gains on the rows of an exam before, and on the first law of this one.
+// Prints what a law gains on the rows of an earlier exam, and on the first law of this
+// one.
 static void print_gains(FILE *stream, const law_exam *e, int law, const exam_rows *beside)
 {
     const int forces = e->asked.force_count;
