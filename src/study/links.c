@@ -10,10 +10,11 @@
 
 const int links_numbers[LINKS_LENGTHS] = {2, 4, 8, 16, 32, 64};
 
-// after first contact in which largest values are looked for [s]
-#define SENSOR_WINDOW   0.02
-#define MOMENTUM_WINDOW 0.002 // and over which momentum is summed [s]
-#define PIECE           1e-5  // of a step, at whose ends the force is looked at [s]
+// time after first contact in which the largest values are looked for [s]
+#define SENSOR_WINDOW 0.02
+#define MOMENTUM_WINDOW                                                                  \
+    0.002          // time after first contact over which momentum is summed [s]
+#define PIECE 1e-5 // longest piece of a step whose ends give the force [s]
 
 enum { SENSORS = 3 };
 static const double sensor_constants[SENSORS] = {0.5e-3, 1e-3, 2e-3}; // [s]
@@ -52,7 +53,7 @@ static const links_row blank_rows[LINKS_QUANTITIES] = {
 
 // --- the blow --------------------------------------------------------------------------
 
-// What the contact gives in its first milliseconds, and what sensors read of it.
+// The first milliseconds of a contact, and what force sensors read of them.
 typedef struct blow {
     double touch;           // first contact [s]
     double speed, impulse;  // of the first impact [m/s], [N s]
@@ -61,7 +62,7 @@ typedef struct blow {
     double sensed[SENSORS]; // largest values [N]
 } blow;
 
-// An impact within the window.
+// Adds an impact: its impulse counts in the momentum unless the steps' forces contain it.
 static void take_impulse(blow *b, const event *e)
 {
     const double impulse = e->delivered_by_step ? 0 : e->impulse;
@@ -74,31 +75,35 @@ static void take_impulse(blow *b, const event *e)
     }
 }
 
-// The force over a step, from the touch and up to the window's end, piece by piece.
+// Adds the force over a step, from the touch to the end of the window, piece by piece.
+// Within the step the force is the parabola first + slope s + curve s^2, s from 0 to 1,
+// whose mean from s to u is first + slope (s + u)/2 + curve (s^2 + s u + u^2)/3.
 static void add_force(blow *b, const force_step *step)
 {
     const step_parabola p = step_parabola_of(step);
-    const double length = step->end - step->start, early = b->touch + MOMENTUM_WINDOW;
+    const double length = step->end - step->start;
+    const double momentum_end = b->touch + MOMENTUM_WINDOW;
     const double end = fmin(step->end, b->touch + SENSOR_WINDOW);
     double from = fmax(step->start, b->touch), to;
     for (; from < end; from = to) {
         to = fmin(from + PIECE, end);
-        if (from < early) {
-            to = fmin(to, early);
+        if (from < momentum_end) {
+            to = fmin(to, momentum_end);
         }
         const double s = (from - step->start) / length, u = (to - step->start) / length;
         const double first = p.first + s * (p.slope + s * p.curve);
         const double last = p.first + u * (p.slope + u * p.curve);
         const double mean =
             p.first + p.slope * (s + u) / 2 + p.curve * (s * s + s * u + u * u) / 3;
-        if (to <= early) {
+        if (to <= momentum_end) {
             b->momentum += (to - from) * mean;
         }
         b->peak = fmax(b->peak, fmax(first, last));
     }
 }
 
-// The blow of a run that has a contact.
+// Goes through the forces and impacts of a run from its first contact to the end of the
+// window.
 static blow blow_of(const run_result *result)
 {
     const shared_array *h = &result->history.forces;
@@ -126,7 +131,7 @@ static blow blow_of(const run_result *result)
 
 // --- one number of links ---------------------------------------------------------------
 
-// The first frequency with the hub held [Hz].
+// The lowest frequency of small vibrations with the hub held [Hz]; NaN if there is none.
 static status first_frequency(const arm *a, tip_end tip, double *frequency, fault *f)
 {
     const size_t dof = (size_t)a->dof;
@@ -157,7 +162,7 @@ static double tip_compliance(const parameters *p)
     parameters_joint_stiffness(&p->arm, stiffness);
     for (int k = p->arm.links - 1; k >= 0; k--) {
         lever += lengths[k];
-        // the first joint is none where hub and first link are one body
+        // without stiffness the first joint is none: hub and first link are one body
         if (k > 0 || stiffness[0] > 0) {
             sum += lever * lever / stiffness[k];
         }
@@ -165,7 +170,8 @@ static double tip_compliance(const parameters *p)
     return sum;
 }
 
-// Column i of the study; *speed is that of the blow [m/s].
+// Computes column i of the study, the chain with links_numbers[i] links; *speed receives
+// the tip's speed at the first impact [m/s].
 static status compute_column(const scenario *s, int i, run_monitor *monitor,
                              links_study *study, double *speed, fault *f)
 {
@@ -174,7 +180,7 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor,
     const parameter_change links = {PARAMETER_INDEX(arm.links), links_numbers[i]};
     TRY(scenario_with(s, &links, 1, &changed, f));
 
-    // the whole run; one that failed has what it has until then, which is not its end
+    // the run, and the blow at its first contact
     SCOPED(run_finish) run_result result;
     const run_options options = {.monitor = monitor, .keep_forces = true};
     const status code = run_scenario_with(&changed, &options, &result);
@@ -208,7 +214,8 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor,
 
 #define DAWSON_LARGEST 0.5410442246351817 // of Dawson's integral, at 0.9241388730
 
-// K [N s^(1/2)].
+// The constant K of a beam whose tip is stopped at once: force K/sqrt(t), momentum 2 K
+// sqrt(t) [N s^(1/2)].
 static double beam_constant(const parameters *p, double speed)
 {
     double bending = p->arm.k2 * p->arm.length / 2, density = p->arm.mass / p->arm.length;
@@ -227,8 +234,9 @@ double links_beam_sensed(const parameters *p, double speed, double time_constant
 
 // --- limits ----------------------------------------------------------------------------
 
-// Richardson's limit of values whose error falls as N^-p, N doubling: the last difference
-// again over 2^p - 1. What it may be off is that step itself.
+// Extrapolates to infinitely many links N by Richardson's method: the error falls as
+// N^-p, and N doubles, so that the limit is the last value plus the last difference over
+// 2^p - 1. The error of the limit is estimated by that correction.
 static void extrapolate(links_row *row)
 {
     const double coarse = row->value[LINKS_LENGTHS - 3],
@@ -238,19 +246,21 @@ static void extrapolate(links_row *row)
     row->limit = fine + (fine - middle) / (plain_pow(2, row->order) - 1);
     row->error = fabs(row->limit - fine);
 
-    // one of which not even the sign is sure is none
+    // a limit whose error is as large as itself is none
     if (!(row->error < fabs(row->limit))) {
         row->limit = row->error = (double)NAN;
     }
 
-    // values that no longer change have arrived
+    // values that do not change have reached their limit
     if (fabs(fine - middle) <= 1e-9 * fabs(fine)) {
         row->limit = fine;
         row->error = fabs(fine - middle);
     }
 }
 
-// The beam with the arm's mass, length and bending stiffness, struck with `speed` [m/s].
+// Fills in the numbers of the uniform beam with the arm's mass, length and bending
+// stiffness, stopped at the tip from `speed` [m/s]. An arm with a tip mass or unlike
+// links has none.
 static void compute_beam(const parameters *p, double speed, links_row *rows)
 {
     const double length = p->arm.length, bending = p->arm.k2 * length / 2;

@@ -24,8 +24,9 @@ typedef struct pool {
     bool stop;
     size_t *pieces; // finished ones, in a ring
     char *results;  // of each
-    int room, first,
-        finished; // places of the ring, the first finished piece, and how many
+    int room;       // places of the ring
+    int first;      // place of the first finished piece
+    int finished;   // finished pieces in the ring
 } pool;
 
 typedef struct pool_thread {
@@ -53,14 +54,14 @@ static void *work_on_pieces(void *argument)
     const pool_work *w = p->work;
     size_t piece;
 
-    // computing goes without the lock
+    // the mutex is released while a piece is computed
     pthread_mutex_lock(&p->mutex);
     while (next_piece(p, &piece)) {
         pthread_mutex_unlock(&p->mutex);
         w->compute(w->context, piece, self->scratch, self->result);
         pthread_mutex_lock(&p->mutex);
 
-        // hand it over, when the calling thread has left room
+        // hand the result over as soon as the ring has room
         while (p->finished == p->room) {
             pthread_cond_wait(&p->changed, &p->mutex);
         }
@@ -83,8 +84,8 @@ static double tick_interval(const pool_work *w)
     return TICK_INTERVAL;
 }
 
-// Waits a little for a finished piece. Its place, -1 without one; *more is false if all
-// threads have ended and nothing is left.
+// Waits for a finished piece, for one tick at most. Returns its place in the ring, or -1
+// if there is none. *more is false if all threads have ended and no piece is left.
 static int wait_for_piece(pool *p, bool stop, bool *more)
 {
     const struct timespec until = clock_after(tick_interval(p->work));
@@ -157,8 +158,8 @@ static status work_alone(pool *p, pool_thread *self, fault *f)
     return code;
 }
 
-// Starts up to `wanted` threads; signals are for the calling one. Returns how many there
-// are.
+// Starts up to `wanted` threads, in which signals are blocked: the calling thread gets
+// them. Returns how many were started.
 static int start_threads(pool *p, pool_thread *threads, int wanted)
 {
     sigset_t before;
@@ -178,8 +179,7 @@ static int start_threads(pool *p, pool_thread *threads, int wanted)
     return started;
 }
 
-// The ring, of which only what was put there is read, and each thread's own storage;
-// false without memory.
+// Allocates the ring of finished pieces and each thread's storage; false without memory.
 static bool allocate(pool *p, pool_thread *threads, int count)
 {
     const pool_work *w = p->work;

@@ -12,7 +12,7 @@
 
 enum { MOST_SET_BYTES = 65536 };
 
-// The whole file as a text on the heap, the caller's in any case.
+// Reads a whole file as a text on the heap, which the caller frees in any case.
 static status read_set_text(const char *path, char **text, fault *f)
 {
     size_t length;
@@ -30,7 +30,7 @@ static status read_set_text(const char *path, char **text, fault *f)
     return STATUS_OK;
 }
 
-// The text without the blanks at both ends, which are cut off.
+// Cuts the blanks off both ends of a text, in place; returns where it then begins.
 static char *trimmed(char *text)
 {
     while (is_blank(*text)) {
@@ -58,8 +58,8 @@ static bool read_push(robust_case *c, const char *text)
     return true;
 }
 
-// Takes a case apart: "TITLE: PATH=VALUE; push=IMPULSE@TIME". Its settings go behind
-// those of the cases before. False if a piece is neither.
+// Reads a case, "TITLE: PATH=VALUE; push=IMPULSE@TIME". Its settings go to settings[],
+// behind those of the cases before. False if a piece is neither a setting nor a push.
 static bool read_case(robust_case *c, char *text, char **settings)
 {
     char *rest = strchr(text, ':');
@@ -86,7 +86,7 @@ static bool read_case(robust_case *c, char *text, char **settings)
     return c->title[0] != '\0';
 }
 
-// Sorts the lines of the text into what is drawn and what is a case.
+// Sorts the lines of the text into parameters to be drawn and cases.
 static status sort_lines(robust_set *set, fault *f)
 {
     static const char word[] = "case ";
@@ -120,16 +120,18 @@ static status sort_lines(robust_set *set, fault *f)
     return STATUS_OK;
 }
 
-// Room for all cases that the text of the set may have, and their settings: they have at
-// least one character each. False without memory.
+// Allocates room for the most cases and settings that the set's text may have: a case is
+// a line, and a setting has at least one character. False without memory.
 static bool allocate_cases(robust_set *set)
 {
-    const size_t most = strlen(set->text) + 1;
+    const size_t most_settings = strlen(set->text) + 1;
     size_t lines = 1;
     for (const char *c = set->text; *c != '\0'; c++) {
-        lines += *c == '\n';
+        if (*c == '\n') {
+            lines++;
+        }
     }
-    set->settings = calloc(most, sizeof *set->settings);
+    set->settings = calloc(most_settings, sizeof *set->settings);
     set->cases = calloc(lines, sizeof *set->cases);
     return set->settings != NULL && set->cases != NULL;
 }
@@ -182,7 +184,8 @@ status robust_case_fault(const robust_case *c, const fault *why, fault *f)
                            c->file, c->line, c->title, why->text);
 }
 
-// The settings and pushes of a case, which must go together with the scenario.
+// Applies the settings and pushes of a case to a scenario, and checks that they go
+// together.
 static status apply_case(scenario *derived, const robust_case *c, fault *f)
 {
     f->code = scenario_override_all(derived, c->settings, c->setting_count,
@@ -239,23 +242,24 @@ static const double robust_levels[ROBUST_QUANTILES] = {
 
 // --- a law -----------------------------------------------------------------------------
 
-// Sorts the values; between two of them a quantile lies on a straight line.
+// Sorts the values and finds their quantiles, interpolated linearly between two values.
 static void find_quantiles(double *values, size_t count, double *quantiles)
 {
     qsort(values, count, sizeof *values, compare_numbers);
     for (int i = 0; i < ROBUST_QUANTILES; i++) {
-        double place = robust_levels[i] * (double)(count - 1), whole = floor(place);
-        size_t at = (size_t)whole, next = at + 1 < count ? at + 1 : at;
-        double part = place - whole;
+        const double place = robust_levels[i] * (double)(count - 1);
+        const double below = floor(place), part = place - below;
+        const size_t k = (size_t)below, next = k + 1 < count ? k + 1 : k;
         if (part > 0) {
-            quantiles[i] = (1 - part) * values[at] + part * values[next];
+            quantiles[i] = (1 - part) * values[k] + part * values[next];
         } else {
-            quantiles[i] = values[at];
+            quantiles[i] = values[k];
         }
     }
 }
 
-// Quantities of every run that a judgement takes; every run that did not fail has steps.
+// The quantities of a run by which a law is judged. STEPS is there to tell a run that
+// failed, which has none.
 #define JUDGED(QUANTITY)                                                                 \
     QUANTITY(COMMAND, "force_command_N")                                                 \
     QUANTITY(OVER, "force_over_command_N")                                               \
@@ -273,13 +277,15 @@ static void find_quantiles(double *values, size_t count, double *quantiles)
 enum { JUDGED(NUMBER) QUANTITIES };
 static const char *const keys[QUANTITIES] = {JUDGED(KEY)};
 
-// The quantities of the runs of a law, and how many of the runs did what.
+// The quantities of the runs of a law, and how many of the runs settled, lost contact,
+// and exceeded the force allowed.
 typedef struct judged_runs {
-    double *of[QUANTITIES];
-    double pushed; // instant of the script's last push [s]
+    double *of[QUANTITIES]; // of each run
+    double pushed;          // instant of the script's last push [s], 0: none
     size_t settled, separated, exceeded;
 } judged_runs;
 
+// The instant of the last push in a scenario's script [s]; 0 without one.
 static double last_push(const scenario *s)
 {
     double pushed = 0;
@@ -292,19 +298,19 @@ static double last_push(const scenario *s)
     return pushed;
 }
 
-// Counts what run i did; `s` is its scenario, NULL where it cannot be made. Brings its
-// overshoots and its error to percent of the command, and its return to a share of the
-// approach.
+// Counts what run i did, and converts its quantities to the units of the table:
+// overshoots and error in percent of the command, the speed of return over that of the
+// approach. `s` is its scenario, NULL where it cannot be made.
 static void count_run(judged_runs *j, robust_law *out, size_t i, const scenario *s)
 {
-    double *const *of = j->of;
-    const double command = of[COMMAND][i];
-    const bool many = s != NULL && s->parameters.arm.links > 2;
+    double *const *quantity = j->of;
+    const double command = quantity[COMMAND][i];
+    const bool many_links = s != NULL && s->parameters.arm.links > 2;
 
-    // the largest force, of an arm of many links without its ringing
-    double largest = of[PEAK][i], allowed = ROBUST_EXCESS * command;
-    if (many) {
-        largest = of[SMOOTHED][i] + command;
+    // the largest force, of an arm with many links the smoothed one, without vibrations
+    double largest = quantity[PEAK][i], allowed = ROBUST_EXCESS * command;
+    if (many_links) {
+        largest = quantity[SMOOTHED][i] + command;
     }
     if (s != NULL && s->parameters.control.force_limit > 0) {
         allowed = s->parameters.control.force_limit;
@@ -312,49 +318,51 @@ static void count_run(judged_runs *j, robust_law *out, size_t i, const scenario 
     if (largest > allowed) {
         j->exceeded++;
     }
-    if (isnan(of[STEPS][i])) {
+    if (isnan(quantity[STEPS][i])) {
         out->failed++;
     }
-    if (!isnan(of[SETTLING][i])) {
+    if (!isnan(quantity[SETTLING][i])) {
         j->settled++;
     }
-    if (of[SEPARATIONS][i] > 0) {
+    if (quantity[SEPARATIONS][i] > 0) {
         j->separated++;
     }
 
     // in the units of the table
-    of[OVER][i] *= 100 / command;
-    of[SMOOTHED][i] *= 100 / command;
-    out->overshoots[i] = of[OVER][i];
-    if (many) {
-        out->overshoots[i] = of[SMOOTHED][i];
+    quantity[OVER][i] *= 100 / command;
+    quantity[SMOOTHED][i] *= 100 / command;
+    out->overshoots[i] = quantity[OVER][i];
+    if (many_links) {
+        out->overshoots[i] = quantity[SMOOTHED][i];
         out->by_smoothed++;
     }
-    of[ERROR][i] = 100 * fabs(of[ERROR][i]) / command;
-    of[BACK][i] /= of[APPROACH][i];
+    quantity[ERROR][i] = 100 * fabs(quantity[ERROR][i]) / command;
+    quantity[BACK][i] /= quantity[APPROACH][i];
 }
 
-// Times from the start and from contact, or from the last push, which begins anew, on.
+// Replaces the times of run i by those of the table: SETTLING counts from the contact or,
+// if later, from the last push; CONTACT becomes the time from the start until the force
+// is settled, which a script with a push does not have.
 static void time_run(judged_runs *j, size_t i)
 {
     double *contact = &j->of[CONTACT][i], *settling = &j->of[SETTLING][i];
-    const double at = *contact + *settling;
-    if (at > j->pushed) {
-        *settling = at - fmax(*contact, j->pushed);
-    } else if (isnan(at)) {
-        *settling = at;
+    const double settled = *contact + *settling;
+    if (settled > j->pushed) {
+        *settling = settled - fmax(*contact, j->pushed);
+    } else if (isnan(settled)) {
+        *settling = settled;
     } else {
         *settling = 0;
     }
     if (j->pushed > 0) {
         *contact = (double)NAN;
     } else {
-        *contact = at;
+        *contact = settled;
     }
 }
 
-// Judges the runs, whose quantities stand `most` behind one another; what is sorted is
-// overwritten.
+// Judges the runs of a law: values[] holds `most` numbers for each quantity, which are
+// sorted in place.
 static void judge_runs(robust_law *out, const sweep *s, const size_t *runs, size_t most,
                        double *values)
 {
@@ -370,7 +378,7 @@ static void judge_runs(robust_law *out, const sweep *s, const size_t *runs, size
         time_run(&j, i);
     }
 
-    // all of them
+    // the shares of all runs, and the quantiles
     if (out->by_smoothed == 0) {
         out->overshoot_of = "peak";
     } else if (out->by_smoothed == n) {

@@ -114,11 +114,15 @@ static result_table result_columns(const robust_table *t)
                           t->count};
 }
 
-// Two counts, then the numbers but the one that another law is needed for.
+// The column of number i of a law's summary: the two counts RUNS and FAILED, then the
+// numbers from SETTLED on without AGAINST, which needs another law.
 static int summary_column(int i)
 {
     const int column = i < 2 ? RUNS + i : SETTLED + i - 2;
-    return column + (column >= AGAINST);
+    if (column >= AGAINST) {
+        return column + 1;
+    }
+    return column;
 }
 
 const char *robust_key(int i)
@@ -137,17 +141,17 @@ double robust_value(const robust_law *law, int i)
         .number;
 }
 
-// What stands in a column of a row, of row -1 the heading; `text` has room for it.
+enum { HEADING = -1 }; // the row of the headings
+
+// The text of a cell; `text` is room for a cell that is made up here.
 static const char *robust_cell(const robust_table *t, int row, const shown_column *shown,
                                char text[ROBUST_CELL])
 {
-    if (row < 0 && shown->column == AGAINST) {
+    if (row == HEADING && shown->column == AGAINST) {
         snprintf(text, ROBUST_CELL, "/%s", t->against);
+        return text;
     }
-    if (row < 0) {
-        if (shown->column == AGAINST) {
-            return text;
-        }
+    if (row == HEADING) {
         return shown->heading;
     }
     const result_table all = result_columns(t);
@@ -185,8 +189,8 @@ void robust_text(FILE *stream, const robust_table *t, bool page)
         }
     }
 
-    // headings, then a line a law
-    for (int i = -1; i < t->count; i++) {
+    // the headings, then a line for each law
+    for (int i = HEADING; i < t->count; i++) {
         for (int k = 0; k < count; k++) {
             const int column = shown[k].column;
             int width;

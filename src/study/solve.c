@@ -12,7 +12,7 @@
 
 // --- the condition ---------------------------------------------------------------------
 
-// The part of a text between two places without blanks at its ends, as a text of its own.
+// Copies the part of a text between two places, without the blanks at its ends.
 static void copy_trimmed(const char *start, const char *end, char *copy, size_t size)
 {
     while (start < end && is_blank(*start)) {
@@ -127,7 +127,8 @@ static trial trial_of(const search *s, double value, const summary *m)
     return (trial){value, quantity, known, true};
 }
 
-// What ends a search, others are runs that say nothing.
+// The status of a run that ends the search, STATUS_STOPPED or STATUS_NO_MEMORY; STATUS_OK
+// of all others, which only leave a value unknown.
 static status ending(status code, fault *f)
 {
     if (code == STATUS_STOPPED || code == STATUS_NO_MEMORY) {
@@ -136,9 +137,8 @@ static status ending(status code, fault *f)
     return STATUS_OK;
 }
 
-// Runs the scenario with one value of the parameter. Values that do not go with the
-// others of the scenario are as good as a run that fails. STATUS_STOPPED,
-// STATUS_NO_MEMORY.
+// Runs the scenario with one value of the parameter. A value that does not go with the
+// scenario's others counts as a run that fails. STATUS_STOPPED or STATUS_NO_MEMORY.
 static status run_trial(const search *s, double value, trial *t, fault *f)
 {
     scenario derived;
@@ -166,8 +166,8 @@ static bool is_whole(const search *s)
            s->axis->element == 0;
 }
 
-// Value i of the range, from its low to its high end, both included; whole numbers are
-// each other's neighbours where there are enough points.
+// Value i of the points in the range, from its low to its high end, both included. Those
+// of a parameter of whole numbers are rounded.
 static double point_value(const search *s, size_t i)
 {
     const size_t points = (size_t)s->found->points;
@@ -188,7 +188,8 @@ static status make_point(void *context, size_t i, scenario *made, fault *f)
     return sweep_axes_scenario(s->axis, 1, &value, s->base, made, f);
 }
 
-// Counts what became of a value of the range, and keeps why the first unknown one is.
+// Counts the result at point i of the range, and keeps why the first unknown one is
+// unknown.
 static status take_point(void *context, size_t i, const summary *m, fault *f)
 {
     search *s = context;
@@ -215,7 +216,7 @@ static status take_point(void *context, size_t i, const summary *m, fault *f)
 
 // --- between two values ----------------------------------------------------------------
 
-// Whether no value lies between two, or none that matters.
+// Whether two values are so near that no value between them is worth trying.
 static bool neighbours(const search *s, double a, double b)
 {
     const double width = fabs(s->axis->high - s->axis->low);
@@ -235,18 +236,18 @@ static double next_value(const search *s, const trial *in, const trial *out, boo
         share = fmin(fmax(share, 1e-3), 1 - 1e-3);
     }
 
-    // one of the whole numbers within
+    // the nearest whole number, at least 1 from either end
     const double value = in->value + share * width;
     if (is_whole(s)) {
-        return in->value +
-               copysign(fmin(fmax(round(fabs(value - in->value)), 1), fabs(width) - 1),
-                        width);
+        const double distance = round(fabs(value - in->value));
+        return in->value + copysign(fmin(fmax(distance, 1), fabs(width) - 1), width);
     }
     return value;
 }
 
-// Locates the limit between two trials, of which one holds. Leaves the innermost two of
-// them.
+// Locates the limit between a trial at which the condition holds, `in`, and one at which
+// it does not, `out`: both move together. After a secant step that did not halve the
+// interval the next step does.
 static status locate(const search *s, trial *in, trial *out, fault *f)
 {
     // a jump is halved down to a part in 1e13, forty times; the secant takes fewer
@@ -266,20 +267,18 @@ static status locate(const search *s, trial *in, trial *out, fault *f)
     return STATUS_OK;
 }
 
+// Locates a limit between any two neighbouring points of the range of which one holds.
 static status locate_limits(search *s, fault *f)
 {
     solution *found = s->found;
     for (int i = 0; i + 1 < found->points; i++) {
         trial a = s->trials[i], b = s->trials[i + 1];
-        const bool first = holds(s, &a);
-        if (!a.done || !b.done || first == holds(s, &b)) {
+        const bool holds_below = holds(s, &a);
+        if (!a.done || !b.done || holds_below == holds(s, &b)) {
             continue;
         }
-
-        // where the quantity ceases to be there between them, that is no limit of its
-        // value
         trial *in = &b, *out = &a;
-        if (first) {
+        if (holds_below) {
             in = &a;
             out = &b;
         }
@@ -290,17 +289,19 @@ static status locate_limits(search *s, fault *f)
             }
             found->stopped = code == STATUS_STOPPED;
         }
+
+        // a place beyond which the quantity is missing is no limit of its value
         if (isnan(out->quantity)) {
             continue;
         }
         found->more = found->count == SOLVE_MOST_LIMITS;
         if (!found->more) {
-            // continuous as far as the values at both sides tell
+            // a jump of the quantity: the values at both sides differ
             const double size = fmax(fabs(s->condition->bound), fabs(in->quantity));
             const bool jumps =
                 is_whole(s) || fabs(in->quantity - out->quantity) > 1e-6 * size;
             found->limits[found->count++] =
-                (solve_limit){in->value, in->quantity, first, jumps, out->value};
+                (solve_limit){in->value, in->quantity, holds_below, jumps, out->value};
         }
     }
     if (found->stopped) {

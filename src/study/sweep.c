@@ -9,7 +9,7 @@
 #include "src/base/random.h"
 #include "src/scenario/effect.h"
 
-#define SOME_SHARE 0.37 // of a range, for a value that is any
+#define SOME_SHARE 0.37 // place in a range of a value that stands for all of them
 
 static const char *const samplings[] = {"grid", "random", "latin"};
 
@@ -30,7 +30,8 @@ int sweep_sampling_find(const char *name)
 
 // --- what is varied --------------------------------------------------------------------
 
-// An axis whose values go with those of the axis before it, one each.
+// Checks an axis whose values are drawn together with those of the axis before it: both
+// are lists of one length.
 static status check_together(const sweep *s, const sweep_axis *axis, fault *f)
 {
     const sweep_axis *before = axis - 1;
@@ -104,7 +105,7 @@ static status draw_latin(sweep *s, random_generator *g, fault *f)
     return STATUS_OK;
 }
 
-// As many as were asked for, or as the grid has.
+// Sets the number of runs: as many as are asked for, or as the grid has points.
 static status count_runs(sweep *s, size_t runs, fault *f)
 {
     const bool grid = s->sampling == SWEEP_GRID;
@@ -123,7 +124,7 @@ static status count_runs(sweep *s, size_t runs, fault *f)
         FAULT_IF(s->run_count > SWEEP_MOST_RUNS, f, STATUS_BAD_ARGUMENT,
                  "the grid has more than %d runs", SWEEP_MOST_RUNS);
     }
-    if (!(!grid || runs == 0)) {
+    if (grid && runs != 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "--runs goes with --sample random or latin; a grid is as "
                          "large as it is, here %zu",
@@ -194,8 +195,8 @@ status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
     return sweep_axes_scenario(s->axes, s->axis_count, values, s->base, derived, f);
 }
 
-// Tells before anything is computed if values do not go together (links and the printed
-// model).
+// Checks, before anything is computed, that the values of each run go together: more
+// links than two do not go with the printed model.
 static status check_combinations(const sweep *s, fault *f)
 {
     // what a very large sweep has beyond these is told in the rows of the runs
@@ -295,8 +296,8 @@ const char *sweep_idle(const sweep *s, size_t run, int axis)
 
 status sweep_check_effect(const sweep *s, int axis, fault *f)
 {
-    // steps of a large prime meet each run once, and those looked at of very many lie all
-    // over them
+    // steps of a large prime number reach every run once; of very many runs those that
+    // are looked at are spread over all
     enum { LOOKED_AT = 10000 };
     const uint64_t step = 2654435761;
     const char *why = NULL;

@@ -262,7 +262,9 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
 
     // how many pieces there may be
     axis->logarithmic = count > 2 && count <= 4 && strcmp(pieces[count - 1], "log") == 0;
-    count -= axis->logarithmic;
+    if (axis->logarithmic) {
+        count--;
+    }
     FAULT_IF(count > 3 || (count < 3 && !drawn), f, STATUS_BAD_ARGUMENT,
              "expected %s (first, last, number of values), with :log for an even "
              "spacing of the logarithm",
@@ -303,7 +305,9 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
     enum { MOST_VALUES = 20000 }; // each is compared with those before it
     size_t most = 1;
     for (const char *c = text; *c != '\0'; c++) {
-        most += *c == ',';
+        if (*c == ',') {
+            most++;
+        }
     }
     FAULT_IF(most > MOST_VALUES, f, STATUS_BAD_ARGUMENT,
              "a list has at most %d values, here are %zu", MOST_VALUES, most);
@@ -317,15 +321,15 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
     char *end = axis->text;
     for (char *piece; (piece = strsep(&text, ",")) != NULL; axis->count++) {
         char value[SWEEP_VALUE_TEXT - 1];
-        double *here = &axis->values[axis->count];
-        TRY(read_axis_value(axis, piece, here, f));
+        double *number = &axis->values[axis->count];
+        TRY(read_axis_value(axis, piece, number, f));
 
-        // in a grid each value once
-        for (const double *other = axis->values; !drawn && other < here; other++) {
-            FAULT_IF(*other == *here, f, STATUS_BAD_ARGUMENT,
+        // a grid has each value once
+        for (const double *other = axis->values; !drawn && other < number; other++) {
+            FAULT_IF(*other == *number, f, STATUS_BAD_ARGUMENT,
                      "'%.60s' stands there twice", piece);
         }
-        sweep_axis_format(axis, *here, value, sizeof value);
+        sweep_axis_format(axis, *number, value, sizeof value);
         end += sprintf(end, "%s%s", axis->count > 0 ? "," : "", value);
     }
     return STATUS_OK;

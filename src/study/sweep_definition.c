@@ -102,25 +102,32 @@ static void define_script(definition *d, const scenario *s)
     free(text);
 }
 
-// What any run of the sweep reads from outside, as bits: whether it does may be varied.
+// The sources that any run of the sweep reads from outside, as bits. The parameter that
+// chooses whether a source is read may be varied: its values then decide, not the
+// scenario's.
 static unsigned read_outside(const sweep *s)
 {
     unsigned sources = outside_read(&s->base->parameters);
     for (int i = 0; i < outside_count; i++) {
         const outside_source *source = &outside_table[i];
+        const unsigned bit = 1U << i;
         for (int k = 0; k < s->axis_count; k++) {
             const sweep_axis *axis = &s->axes[k];
-            const bool chooses = axis->parameter == parameter_at(source->chooser);
-            sources &= ~((unsigned)chooses << i);
-            for (size_t v = 0; chooses && v < axis->count; v++) {
-                sources |= (unsigned)(axis->values[v] == source->choice) << i;
+            if (axis->parameter != parameter_at(source->chooser)) {
+                continue;
+            }
+            sources &= ~bit;
+            for (size_t v = 0; v < axis->count; v++) {
+                if (axis->values[v] == source->choice) {
+                    sources |= bit;
+                }
             }
         }
     }
     return sources;
 }
 
-// The content of what lies outside the scenario.
+// Adds the digest of every file or program outside the scenario that the sweep reads.
 static void define_outside(definition *d, const sweep *s, fault *f)
 {
     const unsigned sources = read_outside(s);
