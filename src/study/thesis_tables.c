@@ -64,14 +64,14 @@ static const thesis_table thesis[STIFFNESSES] = {
       {0.048, 0.047, 0.044, 0.033}}},
 };
 
-// What cannot fail with the thesis's numbers has not failed.
+// Asserts that a call has succeeded which cannot fail with the thesis's numbers.
 static void sure(status code)
 {
     assert(code == STATUS_OK);
     (void)code;
 }
 
-// What one cell's simulation gives to the table.
+// The results of the simulation of one cell.
 typedef struct cell {
     bool touched;
     three_body_state at_touch; // just before contact
@@ -129,7 +129,7 @@ static status simulate_corrected(const parameters *p, cell *c, fault *f)
     return STATUS_OK;
 }
 
-// Five numbers of one cell, NaN where the quantity does not occur.
+// Computes the five quantities of one cell; NaN where one does not occur.
 static status compute_cell(const parameters *p, double value[QUANTITIES], fault *f)
 {
     cell c = {.touched = false, .peak = (double)NAN, .delay = (double)NAN};
@@ -153,23 +153,15 @@ static status compute_cell(const parameters *p, double value[QUANTITIES], fault 
     sure(predict_impact_dynamics(p, &c.at_touch, &dynamics, NULL));
     if (energy.holds) {
         value[FORCE_ENERGY] = energy.force;
-    } else {
-        value[FORCE_ENERGY] = (double)NAN;
     }
     if (dynamics.holds) {
         value[FORCE_DYNAMICS] = dynamics.force;
-    } else {
-        value[FORCE_DYNAMICS] = (double)NAN;
-    }
-    if (dynamics.holds) {
         value[DELAY_DYNAMICS] = dynamics.delay;
-    } else {
-        value[DELAY_DYNAMICS] = (double)NAN;
     }
     return STATUS_OK;
 }
 
-// One table of one model into five rows.
+// Computes one table with one model: a row for each quantity.
 static status compute_table(const parameters *defaults, const thesis_table *source,
                             const char *model, table_row *rows, fault *f)
 {
@@ -234,8 +226,8 @@ status tables_compute(thesis_tables *t, fault *f)
     return STATUS_OK;
 }
 
-// Rows of the same table and quantity, the computed ones `scale` times those of `from`
-// plus `shift`.
+// Adds a row like `from` to the fitted table, with the computed values times `scale` plus
+// `shift`.
 static void add_fitted_row(thesis_tables *t, const table_row *from, double scale,
                            double shift)
 {

@@ -15,7 +15,8 @@
 
 // --- judging ---------------------------------------------------------------------------
 
-// What an expression is of: a law's runs, or a run's quantities.
+// The quantities that an expression is evaluated with: those of a law's runs, or of one
+// run.
 typedef struct judged {
     const robust_law *law; // NULL: a run
     const double *run;     // summary_count numbers
@@ -79,7 +80,8 @@ static status evaluate_expression(const char *text, judged *of, double *value, f
     return code;
 }
 
-// By how much the condition is missed, as a share of its bound; not above 0: it is met.
+// Reads a condition EXPR<=X or EXPR>=X and finds by how much it is missed, as a share of
+// X; 0 or less if it is met.
 static status read_subject(const char *text, judged *of, double *excess, fault *f)
 {
     const char *sign = strpbrk(text, "<>");
@@ -96,7 +98,9 @@ static status read_subject(const char *text, judged *of, double *excess, fault *
     return STATUS_OK;
 }
 
-// What cannot be judged ranks by how many of its runs never settle.
+// Evaluates and ranks a result; the least rank is the best. A result within the condition
+// ranks by its value, one beyond it by how far, and one without a number comes last, by
+// the share of its runs that settle.
 static status judge_result(const tune_request *asked, judged *of, tune_result *out,
                            fault *f)
 {
@@ -126,7 +130,8 @@ status tune_apply(const tuning *t, const double *values, scenario *s, fault *f)
                                s, f);
 }
 
-// Finds the growth where an expression asks for it; of the scenario, nothing drawn.
+// Finds the growth of the scenario's loop, without drawn values, if an expression asks
+// for it.
 static status find_growth(const tune_request *asked, const scenario *s, double *growth,
                           fault *f)
 {
@@ -170,7 +175,7 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
 
     out->computed = progress.done_now;
 
-    // a store that another search has filled
+    // the store may be that of another search: compare the values that it has
     for (int k = 0; k < asked->vary_count; k++) {
         TRY(store->quantity(store, only.share, t->plan.axes[k].name, column, NULL, f));
         FAULT_IF(!isnan(column[0]) && column[0] != values[k], f, STATUS_BAD_ARGUMENT,
@@ -178,7 +183,7 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
                  evaluation + 1, t->plan.axes[k].name, column[0], values[k]);
     }
 
-    // what came out
+    // the quantities of the law's runs or of the single run, and the judgement
     judged of = {asked->over != NULL ? &out->law : NULL, run, (double)NAN};
     scenario derived;
     TRY(tune_apply(t, values, &derived, f));
@@ -197,7 +202,8 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
 
 // --- what is asked for -----------------------------------------------------------------
 
-// Whether everything but what is varied can be right.
+// Checks a request but for what it varies: the set, the law, and both expressions, which
+// are tried on results of zeros.
 static status check_request(const tune_request *asked, fault *f)
 {
     const double run[SUMMARY_NUMBERS] = {0};
@@ -347,8 +353,8 @@ typedef struct search {
     fault *fault;
 } search;
 
-// Rank of the values at these shares of the ranges, for NLopt; what was evaluated before
-// is looked up.
+// NLopt's function: the rank of the values at these shares of the ranges. Values that
+// were evaluated before are looked up; without evaluations left the search ends.
 static double rank_of_shares(unsigned n, const double *shares, double *gradient,
                              void *context)
 {
@@ -395,8 +401,8 @@ static double rank_of_shares(unsigned n, const double *shares, double *gradient,
     return t->ranks[t->done > 0 ? t->done - 1 : 0];
 }
 
-// Lets a method of NLopt begin at the best so far, with steps of that share of the
-// ranges, for so many evaluations.
+// Searches with a method of NLopt from the best values so far, with first steps of a
+// share of the ranges, for at most `most` evaluations.
 static void search_with(search *s, nlopt_algorithm method, double step, size_t most)
 {
     double start[SWEEP_MOST_AXES], least;
@@ -419,7 +425,7 @@ status tune_run(tuning *t, sweep_store *store, const sweep_options *options, fau
     assert(t->done == 0);
     search s = {.t = t, .store = store, .options = options, .fault = f};
 
-    // from the scenario as it is
+    // begin at the scenario's values: bisection finds their shares of the ranges
     for (int i = 0; i < t->asked.vary_count; i++) {
         const sweep_axis *axis = &t->plan.axes[i];
         const double given = sweep_axis_get(axis, &t->asked.base->parameters);
@@ -437,7 +443,7 @@ status tune_run(tuning *t, sweep_store *store, const sweep_options *options, fau
 
     rank_of_shares((unsigned)t->asked.vary_count, s.best, NULL, &s);
 
-    // over the whole ranges, then down from the best, in smaller and smaller steps
+    // search the whole ranges, then descend from the best values in ever smaller steps
     if (s.code == STATUS_OK) {
         search_with(&s, NLOPT_GN_DIRECT_L, 0.25, t->most / 2);
     }

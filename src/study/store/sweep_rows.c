@@ -162,7 +162,7 @@ static void write_idle(const sweep *s, size_t run, json_t *object, csv_writer *c
     json_decref(array);
 }
 
-// One by one, as there may be millions.
+// The rows are read and written one by one, as there may be millions.
 status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
 {
     sweep_database *store = database_of(of);
@@ -237,7 +237,8 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
 
 // --- columns, for whoever draws them ---------------------------------------------------
 
-// Takes row number `at` that a statement stands on, with a number in each of its columns.
+// Appends the row that a statement stands on to the columns, as their number `at`. Each
+// of its columns has a number.
 static status take_row(const sweep_database *store, sqlite3_stmt *row, int key_count,
                        double **columns, size_t at, fault *f)
 {

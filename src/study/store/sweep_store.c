@@ -142,7 +142,7 @@ static status check_definition(sweep_database *store, fault *f)
     return definition_compare(store->path, &was, &now, f);
 }
 
-// Continues the sweep in the database or starts it.
+// Continues the sweep that the database holds, or starts it in an empty one.
 static status adopt(sweep_database *store, fault *f)
 {
     bool empty;
