@@ -13,6 +13,8 @@ static motor_parameters drive(void)
                               .stiction = 0.05};
 }
 
+// Torque per volt, damping and torque at the command of 2 V, computed by hand from the
+// numbers of drive().
 TEST(constants_follow_from_the_circuit)
 {
     motor_parameters p = drive();
@@ -75,7 +77,7 @@ TEST(a_current_drive_knows_no_back_emf)
     motor_parameters p = drive();
     motor_model m;
     p.drive = DRIVE_CURRENT;
-    p.transconductance = 0.2;
+    p.transconductance = 0.2; // A per volt of command
     motor_init(&m, &p);
     check_close(m.torque_per_volt, 0.2 * 2.5, 1e-15);
     check_close(m.damping, 0.01, 0);
@@ -98,10 +100,11 @@ TEST(a_current_drive_knows_no_back_emf)
     coil.inductance = 1e-3;
     assert_true(isnan(motor_electrical_energy(&coil, 2, 0.3, 0.51)));
 
-    // what goes in: heat, and work against back EMF
-    const double duration = 0.3, turn = 0.51, heat = 0.4 * 0.4 * p.resistance * duration;
+    // what a command of 2 V puts in: heat, and work against back EMF
+    const double duration = 0.3, turn = 0.51, current = 0.2 * 2;
+    const double heat = current * current * p.resistance * duration;
     check_relative(motor_electrical_energy(&p, 2, duration, turn),
-                   heat + p.back_emf * 0.4 * turn, 1e-14);
+                   heat + p.back_emf * current * turn, 1e-14);
 }
 
 // A single link without friction in free motion: constant acceleration under a current,
@@ -148,6 +151,12 @@ static motion *motion_until(const arm *a, const parameters *p, double t)
     return m;
 }
 
+// Amplifier gain and armature resistance [ohm] of the shipped arm, from which the tests
+// below expect their numbers: a command of u volts drives the current towards
+// GAIN u / RESISTANCE while the hub stands still.
+static const double GAIN = 6.02, RESISTANCE = 33.6;
+
+// The current [A] of a motor whose armature has an inductance or a limit.
 static double current_of(const motion *m)
 {
     return state_quadratures(m, m->state)[QUADRATURE_CURRENT];
@@ -162,15 +171,21 @@ TEST(current_of_a_held_motor_rises_as_in_a_coil)
             links);
         arm a = arm_of(&p);
         for (int i = 1; i <= 4; i++) {
-            const double t = 0.002 * i, full = 6.02 / 33.6;
+            const double t = 0.002 * i, inductance = 0.1;
+            const double full = GAIN * 1 / RESISTANCE; // the command is 1 V
             KEPT_MOTION(m) = motion_until(&a, &p, t);
-            check_relative(current_of(m), full * (1 - exp(-33.6 / 0.1 * t)), 1e-9);
+            check_relative(current_of(m), full * (1 - exp(-RESISTANCE / inductance * t)),
+                           1e-9);
             check_close(state_velocities(m, m->state)[0], 0, 0);
         }
     }
 }
 
-// A single link without friction: J L w" + J R w' + kT kB w = kT V, two exponentials.
+// A single link without friction, whose hub turns at the speed w. The equations of motion
+// and coil, J w' = kT i and L i' = V - R i - kB w, together are
+// J L w" + J R w' + kT kB w = kT V. From rest without current, w approaches the idle
+// speed V/kB by two exponentials, whose rates are the roots of J L s^2 + J R s + kT kB =
+// 0; the current is J w'/kT.
 TEST(a_free_link_and_its_coil_are_two_exponentials)
 {
     const double inductance = 0.5, t = 0.15;
@@ -182,9 +197,13 @@ TEST(a_free_link_and_its_coil_are_two_exponentials)
         p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
     const double kt = p.motor.torque_constant, kb = p.motor.back_emf,
                  r = p.motor.resistance;
+
+    // the two rates [1/s], and the speed at which back EMF balances the voltage
     const double half = r / inductance / 2,
                  root = sqrt(half * half - kt * kb / inertia / inductance);
-    const double fast = -half - root, slow = -half + root, idle = 2 * 6.02 / kb;
+    const double fast = -half - root, slow = -half + root, idle = 2 * GAIN / kb;
+
+    // speed and current are those of the formula
     KEPT_MOTION(m) = motion_until(&a, &p, t);
     check_relative(state_velocities(m, m->state)[0],
                    idle * (1 +
@@ -196,8 +215,10 @@ TEST(a_free_link_and_its_coil_are_two_exponentials)
                    1e-9);
 }
 
-// Cut at a limit the current accelerates evenly until back EMF takes it below the limit,
-// at a speed from which the approach to the idle speed is exponential.
+// While an amplifier holds the current at its limit I the arm accelerates evenly, by
+// kT I / J. That ends at the speed w with V - R I = kB w, from which on back EMF keeps
+// the current below the limit; the rest of the way to the idle speed V/kB is an
+// exponential of the rate kT kB / (R J).
 TEST(a_limited_current_accelerates_evenly_at_first)
 {
     parameters p = parameters_with(
@@ -208,8 +229,13 @@ TEST(a_limited_current_accelerates_evenly_at_first)
         p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
     const double kt = p.motor.torque_constant, kb = p.motor.back_emf,
                  r = p.motor.resistance;
-    const double knee = (2 * 6.02 - r * 0.2) / kb, until = knee * inertia / (kt * 0.2);
-    const double idle = 2 * 6.02 / kb, rate = kt * kb / r / inertia;
+
+    // where the limited part ends: the speed `knee` at the time `until`
+    const double volts = 2 * GAIN, limit = 0.2;
+    const double knee = (volts - r * limit) / kb, until = knee * inertia / (kt * limit);
+    const double idle = volts / kb, rate = kt * kb / r / inertia;
+
+    // an instant at 0.7 of the limited part, and an instant 1.5 of it after its end
     const double times[2] = {0.7 * until, 2.5 * until};
     const double speeds[2] = {0.7 * knee,
                               idle + (knee - idle) * exp(-rate * 1.5 * until)};
@@ -217,17 +243,26 @@ TEST(a_limited_current_accelerates_evenly_at_first)
         KEPT_MOTION(m) = motion_until(&a, &p, times[i]);
         check_relative(state_velocities(m, m->state)[0], speeds[i], 1e-9);
     }
+}
 
-    // a coil reaches the limit on the way to more, and stays there with the hub held
-    p = parameters_with("wall.kind=none motor.stiction=1000 motor.inductance=0.1 "
-                        "motor.current_limit=0.1");
-    arm_init(&a, &p);
-    const double reached = -0.1 / 33.6 * log(1 - 0.1 * 33.6 / 6.02);
+// With the hub held by friction the current of a coil rises as V/R (1 - e^(-R t/L))
+// until it reaches the limit, and stays there.
+TEST(a_held_coil_stays_at_the_limit_it_reaches)
+{
+    const double inductance = 0.1, limit = 0.1, rate = RESISTANCE / inductance;
+    parameters p = parameters_with("wall.kind=none motor.stiction=1000 "
+                                   "motor.inductance=0.1 motor.current_limit=0.1");
+    arm a = arm_of(&p);
+
+    // the formula, solved for the instant at which the current is at the limit
+    const double reached = -1 / rate * log(1 - limit * RESISTANCE / GAIN);
+
+    // before that instant it rises freely, behind it stays
     KEPT_MOTION(before) = motion_until(&a, &p, 0.9 * reached),
     *after = motion_until(&a, &p, 1.2 * reached);
-    check_relative(current_of(before), 6.02 / 33.6 * (1 - exp(-336 * 0.9 * reached)),
-                   1e-9);
-    check_close(current_of(after), 0.1, 0);
+    check_relative(current_of(before),
+                   GAIN / RESISTANCE * (1 - exp(-rate * 0.9 * reached)), 1e-9);
+    check_close(current_of(after), limit, 0);
 }
 
 // A link whose back EMF outweighs the voltage slows at one limit of the current, goes
@@ -236,13 +271,14 @@ TEST(a_limited_current_accelerates_evenly_at_first)
 // pieces.
 TEST(a_limited_current_changes_sides_however_fast)
 {
-    const double volts = 7.298 * 6.02, start = 18.5, whole = 0.4;
+    const double command = 7.298, volts = command * GAIN; // at the motor
+    const double start = 18.5, whole = 0.4;
     for (EACH_OF(double, limit, 1e-3, 1e-4, 1e-5, 3e-3)) {
         for (EACH_OF(double, side, 1, -1)) {
             parameters p = parameters_with(
                 "arm.links=1 arm.mass=0.0837 wall.kind=none motor.voltage=%.17g "
                 "motor.viscous_friction=0 motor.current_limit=%.17g",
-                7.298 * *side, *limit);
+                command * *side, *limit);
             p.initial.velocity = start * *side;
             const double inertia = p.arm.hub_inertia + p.arm.mass / 3,
                          kst = p.motor.stiction;
@@ -250,13 +286,16 @@ TEST(a_limited_current_changes_sides_however_fast)
             const double resistance = p.motor.resistance,
                          rate = kt * kb / resistance / inertia;
 
-            // evenly until the current leaves one limit, by an exponential to the other,
-            // evenly
+            // Speeds of the three pieces: it falls evenly to `middle + drop`, where the
+            // current leaves one limit; then exponentially, towards `balance`, to
+            // `middle - drop`, where it comes to the other; then evenly again.
             const double drop = resistance * *limit / kb, middle = volts / kb;
             const double slows = (kst + kt * *limit) / inertia;
             const double slower = (kst - kt * *limit) / inertia;
             const double balance = middle - kst * resistance / (kt * kb);
             const double above = middle + drop - balance, below = middle - drop - balance;
+
+            // how long each piece lasts, and the angle turned in all of them
             const double first = (start - middle - drop) / slows;
             const double second = log(above / below) / rate,
                          third = whole - first - second;
@@ -273,8 +312,9 @@ TEST(a_limited_current_changes_sides_however_fast)
     }
 }
 
-// A coil that follows at once in the end: the arm's impact goes to that without one with
-// L.
+// The smaller the inductance L, the nearer is the momentum of an impact to that of a
+// motor without inductance; the difference shrinks in proportion to L, so that it doubles
+// from L = 1 mH to 2 mH and log2 of the ratio is 1.
 TEST(a_small_inductance_is_none_in_the_limit)
 {
     double momentum[3];

@@ -196,8 +196,9 @@ TEST(pressing_from_the_start_finds_the_wall)
     }
 }
 
-// Every lockable law is in the mode that it is told, from one to the next, in flight as
-// in contact, and with the printed arm, whose steps the sensors sample just the same.
+// Every law that can be locked goes from each of its modes to each other, in flight as in
+// contact, with the corrected and with the printed model of the arm. The loop counts
+// through the laws twice, once for each model.
 TEST(every_mode_is_gone_into_from_every_other)
 {
     enum { MOST = 32 };
@@ -216,7 +217,7 @@ TEST(every_mode_is_gone_into_from_every_other)
             modes++;
         }
         for (int part = 0; part < 2; part++) {
-            double time = part == 0 ? 0.006 : 0.601;
+            double time = part == 0 ? 0.006 : 0.601; // in flight, in contact
             for (int i = 0; i < modes; i++) {
                 for (int j = 0; j < modes && count + 2 <= MOST; j++) {
                     for (int k = 0; k < 2; k++, time += 0.01, count++) {
@@ -235,6 +236,8 @@ TEST(every_mode_is_gone_into_from_every_other)
         KEPT_RUN(r);
         fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s: %s", c->name,
                 r.summary.message);
+
+        // one sample after each change the law is in the mode that was asked for
         for (int i = 0; i < count; i++) {
             const double then = script[i].time + 0.006,
                          is = answer_at(&r, then)->controller_mode;
@@ -258,8 +261,10 @@ TEST(names_of_modes_keep_to_their_room)
     assert_string_equal(names[2], "untouched");
 }
 
-// A plug-in is opened where it is the law and may be; one that is only named changes
-// nothing.
+// The names of a law's modes are those of its own table, and whether it can be held in a
+// mode is said there, too. The scenario names a plug-in that does not exist: under
+// another law it must not matter, and under the law "plugin" (which has no table of its
+// own) it gives no modes, whether code may be loaded or not.
 TEST(only_the_law_itself_gives_modes)
 {
     char names[8][MODE_NAME_SIZE];
@@ -271,10 +276,14 @@ TEST(only_the_law_itself_gives_modes)
         for (int law = LAW_NONE; law <= LAW_PLUGIN; law++) {
             p.control.law = law;
             const controller *c = controller_of(law);
+
+            // how many modes the law's own table has
             int modes = 0;
             while (c != NULL && c->modes != NULL && c->modes[modes] != NULL) {
                 modes++;
             }
+
+            // the rig names the same modes
             assert_int_equal(rig_mode_names(&p, names, 8, &lockable), modes);
             assert_int_equal(lockable, c != NULL && c->lockable);
             for (int i = 0; i < modes; i++) {
@@ -284,12 +293,15 @@ TEST(only_the_law_itself_gives_modes)
     }
 }
 
+// A law with an empty list of modes, with a single mode, and without a list. "none" and
+// "" hold the law in no mode (-1); any other name has to be in the list, and the refusal
+// says what is.
 TEST(a_law_of_no_modes_has_none_to_be_held_in)
 {
     static const char *const none[] = {NULL}, *const one[] = {"only", NULL};
     controller law = {.name = "own", .lockable = true, .modes = none};
     fault f = {0};
-    int mode = 7;
+    int mode = 7; // no answer: to be overwritten
     assert_int_equal(rig_find_mode(&law, "none", &mode, &f), STATUS_OK);
     assert_int_equal(mode, -1);
     assert_int_equal(rig_find_mode(&law, "only", &mode, &f), STATUS_BAD_SCENARIO);

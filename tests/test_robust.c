@@ -34,6 +34,7 @@ static scenario derived_of(const scenario *base, const robust_case *of)
     SCOPED(robust_law_finish) robust_law found;                                          \
     free(judged(&found, law, __VA_ARGS__))
 
+// Comments, blank lines and the space around a line do not count.
 TEST(a_set_is_its_lines)
 {
     SET(set, "# beliefs\n\n  belief.k2_factor=0.75:1.25 \r\nwall.kind=point,plane");
@@ -48,6 +49,8 @@ TEST(a_set_is_its_lines)
     REFUSED(STATUS_CANNOT_READ, "", robust_set_read(&none, path, &f));
 }
 
+// A line "case TITLE: CHANGES" is read as a title, settings and pushes, which are applied
+// to the scenario and added to its script.
 TEST(cases_are_what_differs)
 {
     SET(set, "control.seed=1,2\ncase plain:\n"
@@ -81,6 +84,7 @@ TEST(cases_are_what_differs)
     check_close(with.actions[1].value, -0.05, 0);
 }
 
+// Cases without colon, title, time or number, or with more pushes than there is room for.
 TEST(what_is_no_case_is_refused)
 {
     for (EACH_TEXT(c, "control.seed=1,2\ncase no colon\n",
@@ -159,7 +163,8 @@ TEST(what_is_no_set_is_refused)
     }
 }
 
-// Judges a law over a set, on so many threads; the table as JSON on the heap.
+// Judges a law over the lines of a set (`count` of them), in `runs` runs on `jobs`
+// threads. Returns the table as JSON; free it.
 static char *judged(robust_law *found, int law, size_t runs, int jobs, int count,
                     char *const *lines)
 {
@@ -268,17 +273,19 @@ TEST(sets_have_limits)
     robust_set_finish(&set);
 }
 
+// One thread and three judge a law alike: the same table and the same overshoots.
 TEST(threads_change_nothing)
 {
+    enum { RUNS = 12, LINES = 2 };
     char *const lines[] = {"belief.k2_factor=0.75:1.25", "control.seed=1:1000"};
     SCOPED(robust_law_finish) robust_law one, two;
-    KEPT_TEXT(alone) = judged(&one, LAW_HYBRID, 12, 1, 2, lines);
-    KEPT_TEXT(shared) = judged(&two, LAW_HYBRID, 12, 3, 2, lines);
+    KEPT_TEXT(alone) = judged(&one, LAW_HYBRID, RUNS, 1, LINES, lines);
+    KEPT_TEXT(shared) = judged(&two, LAW_HYBRID, RUNS, 3, LINES, lines);
     assert_string_equal(alone, shared);
-    assert_memory_equal(one.overshoots, two.overshoots, 12 * sizeof(double));
+    assert_memory_equal(one.overshoots, two.overshoots, RUNS * sizeof(double));
 }
 
-// One run: every quantile is its value.
+// With a single run every quantile is the value of that run, in percent of the command.
 TEST(one_run_is_all_its_quantiles)
 {
     JUDGED(found, LAW_HYBRID, 1, 1, 1, ((char *const[]){"wall.kind=point"}));
@@ -294,24 +301,36 @@ TEST(one_run_is_all_its_quantiles)
     check_close(found.exceeded, 1, 0); // by 77 % of the command
 }
 
+// Twenty-four arms whose mass, torque, friction and wall differ from what the laws
+// believe, judged for both laws on two threads. The quantiles of a law rise to the worst
+// run. The bounds for the observer law (30 % overshoot, 5 % error) are what it is meant
+// to keep, and its worst run is better than the median of the hybrid law.
 TEST(quantiles_rise_and_the_observer_law_stands_the_set)
 {
+    enum { RUNS = 24, JOBS = 2, LINES = 5 };
     char *const lines[] = {"belief.mass_factor=0.85:1.15",
                            "belief.torque_factor=0.85:1.15",
                            "belief.friction_factor=0.7:1.3",
                            "belief.wall_error=-0.03:0.03", "control.seed=1:1000"};
     SCOPED(robust_law_finish) robust_law hybrid, observer;
-    free(judged(&hybrid, LAW_HYBRID, 24, 2, 5, lines));
-    free(judged(&observer, LAW_OBSERVER, 24, 2, 5, lines));
+
+    // the table itself is not looked at here
+    free(judged(&hybrid, LAW_HYBRID, RUNS, JOBS, LINES, lines));
+    free(judged(&observer, LAW_OBSERVER, RUNS, JOBS, LINES, lines));
+
+    // overshoots are sorted: the worst is the last
     check_below(hybrid.overshoot[ROBUST_MEDIAN], hybrid.overshoot[ROBUST_WORST]);
-    check_close(hybrid.overshoot[ROBUST_WORST], hybrid.overshoots[23], 0);
+    check_close(hybrid.overshoot[ROBUST_WORST], hybrid.overshoots[RUNS - 1], 0);
+
+    // the observer law keeps its bounds and settles in every run
     check_below(observer.overshoot[ROBUST_WORST], 30);
     check_below(observer.error[ROBUST_WORST], 5);
     check_below(observer.overshoot[ROBUST_WORST], hybrid.overshoot[ROBUST_MEDIAN]);
     check_close(observer.settled, 1, 0);
 }
 
-// A run that never settles counts as the worst.
+// Of the two starting angles only the second is near enough to the wall to settle: half
+// of the runs settle, and the worst settling time is none at all.
 TEST(what_never_settles_is_in_no_quantile)
 {
     JUDGED(found, LAW_HYBRID, 4, 1, 1, ((char *const[]){"initial.angle=-2.9,-0.1"}));
@@ -355,6 +374,8 @@ static void check_table(void (*writes)(FILE *, const robust_table *),
     }
 }
 
+// Tables as text (a head of two lines) and as CSV (a head of one line) have a line for
+// each law, with and without a law to compare with.
 TEST(tables_have_a_line_a_law)
 {
     const double never = (double)NAN;
@@ -414,8 +435,8 @@ TEST(texts_and_json_say_what_is_there)
     json_decref(json);
 }
 
-// A force limit is what a run may not exceed, where one is told; chains are judged by the
-// smoothed force.
+// A scenario with a force limit counts the runs that exceed it. Arms of two links are
+// judged by the peak force, chains of more links by the smoothed force.
 TEST(a_limit_says_what_is_too_much)
 {
     char *const low[] = {"control.force_limit=0.5"}, *const high[] = {

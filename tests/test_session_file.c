@@ -6,6 +6,7 @@
 
 static const char path[] = "lab.session";
 
+// Saves the visit to `path`, in the place of what is there.
 static void save(explorer *ex)
 {
     unlink(path);
@@ -14,7 +15,8 @@ static void save(explorer *ex)
 }
 
 // Runs of two scenarios, changes, pushes, pins, panes, axes, zoom and mark come back to
-// the last bit; saved again the file is the same; leaving asks nothing.
+// the last bit. Saved again the file is the same. Leaving right after saving asks
+// nothing. The keys pin two runs ("b"), change the second, and set up the panes.
 TEST(test_what_was_done_comes_back)
 {
     static const char keys[] =
@@ -31,6 +33,7 @@ TEST(test_what_was_done_comes_back)
     KEPT_TEXT(first) = file_text(path);
     press_quits(&ex, "q", true);
 
+    // another explorer opens the file: the same present run, the same pinned runs
     OPEN_EXPLORER(again, "corrected/three-links");
     fail_if(!explorer_open_session(&again.model, &again.view, &again.input, path), "%s",
             again.input.message.text);
@@ -43,6 +46,8 @@ TEST(test_what_was_done_comes_back)
         assert_string_equal(a->name, b->name);
         assert_int_equal(a->hidden, b->hidden);
     }
+
+    // the cursor, the mark, the panes and the limit that the keys set
     check_close(again.model.session.now, 0.5, 0);
     check_close(again.view.mark.time, 0.3, 0);
     for (int i = 0; i < PANES; i++) {
@@ -56,23 +61,25 @@ TEST(test_what_was_done_comes_back)
     check_close(again.model.limit.bound, 2.5, 0);
     assert_int_equal(again.view.panes.pane[2].scaling, AXIS_GROW);
 
-    // and again
+    // saved a second time the file is the same
     assert_true(explorer_carry_out(&again, "session save lab.session"));
     assert_holds(path, first);
 
-    // the run is changed and undone as any other; opening it is undone, too
+    // changes of the opened run are undone as any others; behind them, opening it is
+    // undone
     press(&again, "uu");
     assert_int_equal(again.model.session.input_count, ex.model.session.input_count - 2);
     press_opens(&again, "uuu", "corrected/three-links");
 }
 
+// Writes a recording of one constant command.
 static void write_command(const char *volts)
 {
     put_file("command.csv", formatted("t,command\n0,%s\n", volts));
 }
 
-// A recording that a run plays belongs to it, by content: another one in its place is
-// told.
+// The content of a recording that a run plays belongs to the run: a session says when it
+// opens and another recording has taken the place of the kept recording.
 TEST(test_changed_recordings_are_told)
 {
     write_command("1");
@@ -81,17 +88,21 @@ TEST(test_changed_recordings_are_told)
         &ex,
         ":set control.playback_file command.csv<Enter>:set control.law playback<Enter>");
     save(&ex);
+
+    // opened with the recording unchanged: no warning
     OPEN_EXPLORER(same, "corrected/three-links");
     assert_true(explorer_open_session(&same.model, &same.view, &same.input, path));
     fail_if(same.input.message.warning, "%s", same.input.message.text);
 
+    // opened with another recording in its place: a warning
     write_command("2");
     OPEN_EXPLORER(other, "corrected/three-links");
     assert_true(explorer_open_session(&other.model, &other.view, &other.input, path));
     assert_true(other.input.message.warning);
     assert_non_null(strstr(other.input.message.text, "has changed since it was kept"));
 
-    // so is one that was put there between the run and its keeping
+    // a recording that is replaced after the run and before the session is saved: a
+    // warning, too
     write_command("3");
     save(&other);
     OPEN_EXPLORER(late, "corrected/three-links");
@@ -100,7 +111,8 @@ TEST(test_changed_recordings_are_told)
     unlink("command.csv");
 }
 
-// No file of others is replaced; the visit's own is.
+// "session save" refuses to replace a file that the visit did not write, and replaces the
+// file that it wrote.
 TEST(test_only_the_visits_own_file_is_replaced)
 {
     put_file(path, "precious");
@@ -113,7 +125,8 @@ TEST(test_only_the_visits_own_file_is_replaced)
     assert_shows(&ex, "cannot be opened");
 }
 
-// What is said after keeping one is a command that goes on with it, whatever the name.
+// After a session is saved the message gives the command that goes on with it, quoted
+// where the name of the file has a space.
 TEST(test_the_command_that_is_told_works)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -121,14 +134,17 @@ TEST(test_the_command_that_is_told_works)
     fail_if(strstr(ex.input.message.text, "impactlab lab 's 1.session'") == NULL, "%s",
             ex.input.message.text);
     assert_true(file_has("s 1.session", "impactlab-session"));
+
+    // a second pin, saved to the same file without a question
     press(&ex, "b:session save s 1<Enter>");
     assert_false(ex.input.message.warning);
     OPEN_EXPLORER(again, "corrected/three-links");
     press_opens(&again, ":session open s 1<Enter>", "corrected/first-impact");
 }
 
-// A session whose law is a program asks before it starts it, and its lines do nothing but
-// look.
+// A session from elsewhere whose law is a program does not start the program, and its
+// lines of a view cannot save a file or allow the program: the file `mark`, which either
+// would write, is not there.
 TEST(test_a_file_from_elsewhere_starts_nothing)
 {
     const char *mark = formatted("%s/started", test_folder);
@@ -145,7 +161,8 @@ TEST(test_a_file_from_elsewhere_starts_nothing)
     assert_int_equal(access(mark, F_OK), -1);
 }
 
-// Each fault is told with its line, and nothing is taken.
+// Each fault of a session file is reported with line and column, and the visit stays as
+// it was: one pinned run and one change.
 TEST(test_broken_files_are_refused_with_their_line)
 {
 #define BASE "impactlab-session: 1\nscenario: a\n| title: \"a\"\n"
@@ -185,7 +202,7 @@ TEST(test_broken_files_are_refused_with_their_line)
         assert_int_equal(ex.model.session.input_count, 1);
     }
 
-    // any beginning of a good one is told, or is whole; none crashes
+    // any beginning of a good file is read or refused with a sentence; none crashes
     save(&ex);
     KEPT_TEXT(good) = file_text(path);
     const size_t length = strlen(good);
@@ -202,7 +219,8 @@ TEST(test_broken_files_are_refused_with_their_line)
     }
 }
 
-// More pins than there is room for change nothing.
+// Four runs are pinned, as many as there is room for: a session with four more pins is
+// refused, and nothing changes.
 TEST(test_pins_without_room_are_refused)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -210,6 +228,8 @@ TEST(test_pins_without_room_are_refused)
         press_text(&ex, ":set arm.k2 %d<Enter>b", 4 + i);
     }
     save(&ex);
+
+    // saving without a name proposes a file and waits
     press(&ex, ":session save<Enter>"); // proposes the visit's own file
     assert_true(ex.input.prompt.open);
     press(&ex, "<Esc>");

@@ -5,48 +5,93 @@
 #include "render/plot/study_plot.h"
 #include "tests/sweep_fixture.h"
 
+// Leaves the folder of the tests, after what Pango keeps is given back.
 static int close_all(void **state)
 {
     pango_cairo_font_map_set_default(NULL); // what Pango keeps for later figures
     return sweep_fixture_close(state);
 }
 
-static void must_draw(const char *a, const char *b, sweep_sampling sampling, size_t runs,
-                      const char *path, double offset)
+// A sweep of one or two parameters and the file that its picture is written to.
+typedef struct drawn_sweep {
+    const char *vary, *and_vary; // as after --vary; `and_vary` may be NULL
+    sweep_sampling sampling;
+    size_t runs; // of a random sampling
+    const char *path;
+    double offset; // added to all values that are drawn
+} drawn_sweep;
+
+// Draws invented values of a sweep: offset + 0 to 10, with a gap (NAN) in each seventh
+// run.
+static void must_draw(drawn_sweep c)
 {
-    SWEPT(s, sampling, runs, a, b);
+    SWEPT(s, c.sampling, c.runs, c.vary, c.and_vary);
     SCOPED(free_kept) double *values = malloc(s.run_count * sizeof *values);
     assert_non_null(values);
     for (size_t run = 0; run < s.run_count; run++) {
-        values[run] = run % 7 == 3 ? (double)NAN : offset + (double)(run % 11);
+        values[run] = run % 7 == 3 ? (double)NAN : c.offset + (double)(run % 11);
     }
+
+    // the picture
     sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
-    DONE(sweep_plot_check(&s, path, &f));
+    DONE(sweep_plot_check(&s, c.path, &f));
     owned_figure *drawn = sweep_figure_create(&shown);
-    DONE(figure_write(&drawn->figure, path, &f));
+    DONE(figure_write(&drawn->figure, c.path, &f));
     owned_figure_destroy(drawn);
+
+    // a file of some size
     struct stat about;
-    assert_int_equal(stat(path, &about), 0);
+    assert_int_equal(stat(c.path, &about), 0);
     assert_true(about.st_size > 1000);
-    unlink(path);
+    unlink(c.path);
 }
 
+// Lines, logarithmic axes, words, a single point, random samples, and maps of two
+// parameters. The offsets make axes hard: values that differ by a hundred-millionth of
+// their size, values that are all missing, and values a millionth away from whole
+// numbers.
 TEST(every_kind_of_sweep_can_be_drawn)
 {
-    must_draw("motor.voltage=1:2:9", NULL, SWEEP_GRID, 0, "a.png", 0);
-    must_draw("motor.voltage=3,1,2", NULL, SWEEP_GRID, 0, "a.pdf", 0);
-    must_draw("arm.k2=1:1e6:200:log", NULL, SWEEP_GRID, 0, "a.svg", 0);
-    must_draw("method.name=newmark,event", NULL, SWEEP_GRID, 0, "a.png", 0);
-    must_draw("motor.voltage=1", NULL, SWEEP_GRID, 0, "a.png", 0);
-    must_draw("motor.voltage=1:2", NULL, SWEEP_RANDOM, 30, "a.svg", -1e9);
-    must_draw("motor.voltage=2:1:9", "arm.k2=1:1e-5:5:log", SWEEP_GRID, 0, "a.png", 0);
-    must_draw("motor.voltage=1:2:9", "method.name=event,newmark", SWEEP_GRID, 0, "a.pdf",
-              0);
-    must_draw("motor.voltage=1", "arm.k2=3", SWEEP_GRID, 0, "a.png", (double)NAN);
-    must_draw("motor.voltage=1:2", "arm.k2=3,4", SWEEP_LATIN, 30, "a.png", 1e-6);
+    const drawn_sweep sweeps[] = {
+        // one parameter
+        {.vary = "motor.voltage=1:2:9", .path = "a.png"},
+        {.vary = "motor.voltage=3,1,2", .path = "a.pdf"},
+        {.vary = "arm.k2=1:1e6:200:log", .path = "a.svg"},
+        {.vary = "method.name=newmark,event", .path = "a.png"},
+        {.vary = "motor.voltage=1", .path = "a.png"},
+        {.vary = "motor.voltage=1:2",
+         .sampling = SWEEP_RANDOM,
+         .runs = 30,
+         .path = "a.svg",
+         .offset = -1e9},
+
+        // two parameters
+        {.vary = "motor.voltage=2:1:9",
+         .and_vary = "arm.k2=1:1e-5:5:log",
+         .path = "a.png"},
+        {.vary = "motor.voltage=1:2:9",
+         .and_vary = "method.name=event,newmark",
+         .path = "a.pdf"},
+        {.vary = "motor.voltage=1",
+         .and_vary = "arm.k2=3",
+         .path = "a.png",
+         .offset = (double)NAN},
+        {.vary = "motor.voltage=1:2",
+         .and_vary = "arm.k2=3,4",
+         .sampling = SWEEP_LATIN,
+         .runs = 30,
+         .path = "a.png",
+         .offset = 1e-6},
+    };
+    for (EACH(c, sweeps)) {
+        must_draw(*c); // SWEEP_GRID where no sampling is given
+    }
 }
 
-// Methods beside a number: a curve for each over the number, whichever was varied first.
+// Two methods and three voltages give six runs, drawn as a curve over the voltage for
+// each method, whichever was varied first. The values that are drawn are the voltage
+// itself for the first method and the voltage + 100 for the second, so that each curve
+// shows which runs it is made of.
 TEST(words_have_a_curve_each)
 {
     static const char *const varied[2][2] = {{"method.name=event,newmark",
@@ -59,11 +104,12 @@ TEST(words_have_a_curve_each)
         must_sweep(&s, SWEEP_GRID, 0, varied[k][0], varied[k][1]);
         assert_int_equal(s.run_count, 6);
         for (size_t run = 0; run < 6; run++) {
-            // 100 for the second method, and the voltage
             double volts = sweep_value(&s, run, 1 - k);
             values[run] =
                 volts + (sweep_value(&s, run, k) == s.axes[k].values[1] ? 100 : 0);
         }
+
+        // not a map, but two curves over the voltage
         sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
         owned_figure *drawn = sweep_figure_create(&shown);
         const figure *fig = &drawn->figure;
@@ -71,6 +117,8 @@ TEST(words_have_a_curve_each)
         assert_int_equal(fig->panels[0].series_count, 2);
         assert_string_equal(fig->x.name, "motor.voltage");
         assert_string_equal(fig->panels[0].series[1].label, "newmark");
+
+        // each curve has the values of its method
         for (int i = 0; i < 3; i++) {
             assert_true(fig->panels[0].series[0].y[i] == fig->panels[0].series[0].x[i]);
             assert_true(fig->panels[0].series[1].y[i] ==
@@ -80,6 +128,8 @@ TEST(words_have_a_curve_each)
     }
 }
 
+// Three parameters are refused before anything is drawn, and so is a file of no known
+// kind.
 TEST(a_picture_shows_two_parameters_at_most)
 {
     char *vary[] = {"arm.k1=1,2", "arm.k2=1,2", "arm.mass=1,2"};
