@@ -311,8 +311,9 @@ static char *write_with_exponent(char *text, const char *digits, int count, int 
     return text + write_whole(text, size);
 }
 
-// Writes with the fewest digits that read back as the same number: with an exponent below
-// 1e-4, and from 10^(digits) on, but not for less than `most_plain` of them.
+// Writes with the fewest digits that read back as the same number. Plainly where the
+// power of ten of the first digit is at least -4 and below the number of digits or
+// most_plain, whichever is larger; else with an exponent.
 static void write_digits(char *text, double value, int most_plain)
 {
     if (isnan(value)) {

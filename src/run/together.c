@@ -56,7 +56,8 @@ static void end_run(side_run *one, status failed)
     recording_end(&one->recording, failed, &one->fault);
 }
 
-// Begins a run in the storage of the one before it.
+// Begins a run in the storage of the one before it. What `one` keeps is taken out of it
+// before anything can fail, so that no storage has two owners.
 static status begin_run(side_run *one, const scenario *s, const run_options *options,
                         run_result *result)
 {

@@ -73,8 +73,8 @@ static void take_signals(void)
     for (int i = 0; i < SIGNALS; i++) {
         sigaction(signals[i], NULL, &before[i]);
 
-        // one that is ignored ends nothing and stays ignored; so does ^Z of a shell
-        // without jobs
+        // a fatal signal that is ignored stays ignored, and so does ^Z of a shell without
+        // jobs; the other polite ones are caught anyway
         const bool is_ignored = before[i].sa_handler == SIG_IGN;
         const bool may_stay_ignored = i >= POLITE_SIGNALS || signals[i] == SIGTSTP;
         if (is_ignored && may_stay_ignored) {

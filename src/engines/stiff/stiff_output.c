@@ -216,6 +216,8 @@ static value_and_slope by_time(const stiff_integrator *s, value_and_slope g)
     return (value_and_slope){g.value, g.slope / s->step.length};
 }
 
+// Functions from EVENT_OF_STICTION on have a second, farther limit: the smaller value of
+// the two counts, also where one of them is not a number.
 value_and_slope stiff_watched_at(const stiff_integrator *s, event_function w, double x)
 {
     value_and_slope near = function_at(&s->function[w], x);

@@ -238,6 +238,8 @@ void stiff_keep_stages(stiff_integrator *integrator)
 // The error is estimated as RADAU5 does it: by the difference between the embedded
 // formula of order 7 and the stages, filtered by the real system.
 
+// A norm of velocities: sqrt(I_hub w0^2 + sum of m v^2) of the arm stretched out, v being
+// the speed of each link's outer end [kg^(1/2) m/s].
 double stiff_momentum(const stiff_integrator *integrator, const double *w)
 {
     const stiff_step *s = &integrator->step;

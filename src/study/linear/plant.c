@@ -568,6 +568,8 @@ static status fill_sampled(linear_system *out, const linear_system *s, int n, in
     return STATUS_OK;
 }
 
+// Samples the arm at rest, with its sensors' lags and the delay of commands, at
+// control.rate.
 status linear_sample(linear_system *sampled, const linear_arm *rest, const parameters *p,
                      fault *f)
 {

@@ -163,7 +163,8 @@ static int read_against(robustness *r)
     return EXIT_DONE;
 }
 
-// What the set draws for each law, in each case.
+// What the set draws for each law, in each case: the text of its lines, and their numbers
+// in the file.
 static sweep_request request_of(const robustness *r)
 {
     return (sweep_request){.vary = r->set.lines,
