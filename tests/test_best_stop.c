@@ -11,11 +11,19 @@ static pressed_arm_model model_of(const char *const *settings)
     return m;
 }
 
+// Rate [1/s] of the runaway mode. With a force F held at the wall the model is
+// mass_force x'' = spring_force x - F, so that xi = spring_force (x + x'/s) obeys
+// xi' = s (xi - F) with this s: the force grows away from every F but xi.
 static double divergence(const pressed_arm_model *m)
 {
     return sqrt(m->spring_force / m->mass_force);
 }
 
+// A pressed arm moves as one: the first link turns by x, the second one by -x. From the
+// masses of the arm, m = 0.20054 kg and l = 0.5 m a link, follow the inertia
+// M11 - 2 M12 + M22 [kg m^2], the torque 4 k2 of the spring between the links per x, and
+// the force at the wall, F = (2 k2/l) x - ((M12 - M22)/l) x''. An arm that does not move
+// like this has no such model.
 TEST(the_model_has_the_numbers_of_the_arm)
 {
     pressed_arm_model m = model_of(NULL);
@@ -24,6 +32,8 @@ TEST(the_model_has_the_numbers_of_the_arm)
     check_close(m.spring_force, 19.68, 1e-9);
     check_close(m.mass_force, 0.0167, 1e-4);
     check_close(m.torque_limit, 4.377, 1e-3);
+
+    // each of these settings alone takes the arm out of the model
     for (EACH_TEXT(c, "arm.links=1", "arm.hub_joint=spring", "arm.damping_ratio=0.1",
                    "wall.kind=none", "arm.model=printed", "arm.tilt=0.3",
                    "arm.tip_mass=0.1", "arm.air_drag=0.1", "arm.stiffening=1",
@@ -32,20 +42,25 @@ TEST(the_model_has_the_numbers_of_the_arm)
         assert_false(pressed_arm_model_of(&p, &m));
     }
 
-    // links with the inertia of their mass at half their length: the force needs no
-    // motion
+    // links whose inertia m l^2/4 makes M12 equal to M22: the force does not depend on
+    // the acceleration, and there is no runaway mode
     parameters p =
         fixture_parameters(SETTINGS("arm.mass=0.4", "arm.link_inertia=0.0125"));
     assert_false(pressed_arm_model_of(&p, &m));
 }
 
-// Docs: x' = ((M11 - M12) w2 + (M12 - M22) w3)/M.
+// The impact leaves one velocity x' = ((M11 - M12) w2 + (M12 - M22) w3)/M, which keeps
+// the momentum along x (w2 and w3 are the links' velocities before, M is the inertia
+// along x).
 TEST(an_impact_throws_both_links_onto_one_motion)
 {
     parameters p = fixture_parameters(SETTINGS("wall.angle=0"));
     pressed_arm_model m;
     pressed_state after;
     assert_true(pressed_arm_model_of(&p, &m));
+
+    // the mass matrix of the stretched arm: hub of 5.2e-3 kg m^2, links of 0.20054 kg and
+    // 0.5 m
     double ml2 = 0.20054 * 0.25, i = p.arm.link_inertia, m11 = 5.2e-3 + i + 1.25 * ml2,
            m12 = 0.5 * ml2, m22 = i + 0.25 * ml2;
     three_body_state before = {{0.001, 0.001, -0.001}, {0.5, 0.5, 0.9}};
@@ -54,13 +69,16 @@ TEST(an_impact_throws_both_links_onto_one_motion)
                    1e-4);
     check_close(after.x, 0.001, 1e-15);
 
-    // one that is no number throws them nowhere
+    // velocities whose momentum is beyond the largest number are refused
     p.arm.mass = 1000;
     before.velocity[1] = before.velocity[2] = 1.5e308;
     assert_false(pressed_after_impact(&p, &before, &after));
 }
 
-// With a motor that gives every force only the runaway mode counts, in closed form.
+// With a motor that gives every force only the runaway mode xi counts (see divergence).
+// The smallest peak is xi itself. A lower force is reached soonest under the force
+// `peak`, from where xi falls to 1.05 of it, a higher one without force, until xi has
+// grown to 0.95 of it; both times are the logarithms that solve xi' = s (xi - F).
 TEST(a_strong_motor_leaves_the_closed_forms)
 {
     pressed_arm_model m = model_of(SETTINGS("motor.voltage_limit=1000"));
@@ -69,6 +87,8 @@ TEST(a_strong_motor_leaves_the_closed_forms)
         pressed_state at = {0.003, *c};
         double xi = k * (at.x + at.velocity / s);
         check_relative(best_peak(&m, at), xi, 1e-4);
+
+        // a force below the present one, above it, and the present one
         const double peak = 1.4 * xi, low = 0.6 * xi, high = 1.9 * xi;
         check_close(best_settling(&m, at, low, 0.05, peak),
                     log((peak - 1.05 * low) / (peak - xi)) / s, 3e-6);
@@ -90,8 +110,11 @@ TEST(the_gentlest_touch_has_a_best_force_too)
     }
 }
 
-// A hub that is braked hard presses at once, whatever the motor does: no peak is below
-// that.
+// A hub with much damping is braked by it from the first moment, and the braked mass
+// presses on the wall whatever the motor does: at x = 0 the force is -mass_force x'',
+// with x'' from the damping and the motor's largest torque. No peak is below this force
+// or below that of the runaway mode; the best one is at most 0.3 N above the larger of
+// them.
 TEST(no_peak_is_below_the_force_of_the_damping)
 {
     pressed_arm_model m = model_of(NULL);
@@ -106,23 +129,31 @@ TEST(no_peak_is_below_the_force_of_the_damping)
     }
 }
 
-// A motor holds what its largest torque and stiction together carry, and no more.
+// A motor holds a force that its largest torque and stiction together carry, and no
+// larger one: at rest x = torque/stiffness, and the force is spring_force x. At a force
+// that can be held the settling time is zero.
 TEST(stiction_helps_to_hold)
 {
     pressed_arm_model m = model_of(NULL);
     m.stiction = 0.3 * m.torque_limit;
     const double most = m.spring_force / m.stiffness * (m.torque_limit + m.stiction);
+
+    // 0.75 to 0.93 of the largest force; the torque alone would carry 0.77 of it
     for (int i = 0; i < 4; i++) {
         const double share = 0.75 + 0.06 * i, force = share * most;
         const pressed_state there = {force / m.spring_force, 0};
         check_close(best_settling(&m, there, force, 0.05, 1.06 * force), 0, 1e-3);
     }
+
+    // a hundredth more than that is never held
     const double more = 1.01 * most;
     assert_true(isnan(best_settling(&m, (pressed_state){more / m.spring_force, 0}, more,
                                     0.05, 1.06 * more)));
 }
 
-// A limited current brakes less, and what it cannot hold is not settled on.
+// A lower limit of the current leaves less torque to brake with: the peak is higher, the
+// force settles later, and with too little current it does not settle at all. A limit
+// that the motor never reaches (10 A) changes nothing.
 TEST(a_limited_current_stops_later)
 {
     pressed_arm_model any = model_of(NULL),
@@ -130,6 +161,8 @@ TEST(a_limited_current_stops_later)
     pressed_arm_model some = model_of(SETTINGS("motor.current_limit=0.4"));
     pressed_arm_model little = model_of(SETTINGS("motor.current_limit=0.1"));
     const pressed_state at = {0, 1.37};
+
+    // settling: on 1 N within 5 %, below a peak of 9 N
     const double peak = best_peak(&any, at),
                  settling = best_settling(&any, at, 1, 0.05, 9);
     check_close(best_peak(&much, at), peak, 0);
@@ -140,20 +173,32 @@ TEST(a_limited_current_stops_later)
     assert_true(isnan(best_settling(&little, at, 1, 0.05, 9)));
 }
 
+// There is no best peak, or no best settling time, where the arm leaves the wall or the
+// motor cannot do what is wanted: the answer is NaN. Arguments of best_settling: state,
+// the wanted force [N], its band (5 %) and the peak that is allowed [N].
 TEST(what_cannot_be_is_said)
 {
     pressed_arm_model m = model_of(NULL);
-    assert_true(isnan(best_peak(&m, (pressed_state){0.01, -0.1})));
-    assert_true(
-        isnan(best_peak(&m, (pressed_state){-0.05, 1}))); // thrown back by its own bend
-    assert_true(isnan(
-        best_settling(&m, (pressed_state){0, -1}, 1, 0.05, 2))); // it leaves the wall
-    assert_true(isnan(
-        best_settling(&m, (pressed_state){0, 1}, 6, 0.05, 9))); // the motor is too weak
-    // 0.58 N are needed to stop, so no less can lead down
-    assert_true(isnan(best_settling(&m, (pressed_state){0, 1}, 0.4, 0.05, 0.5)));
-    // no force is none to be settled on
-    assert_true(isnan(best_settling(&m, (pressed_state){0, 1}, 0, 0.05, 0.5)));
+
+    // an arm that moves away from the wall, and one whose bend throws it back
+    assert_true(isnan(best_peak(&m, (pressed_state){.x = 0.01, .velocity = -0.1})));
+    assert_true(isnan(best_peak(&m, (pressed_state){.x = -0.05, .velocity = 1})));
+
+    // an arm that leaves the wall has no force to settle on
+    const pressed_state leaving = {.x = 0, .velocity = -1};
+    assert_true(isnan(best_settling(&m, leaving, 1, 0.05, 2)));
+
+    // 6 N are more than the motor holds: torque_limit 4.377 N m gives 4.377 N
+    const pressed_state arriving = {.x = 0, .velocity = 1};
+    assert_true(isnan(best_settling(&m, arriving, 6, 0.05, 9)));
+
+    // 0.58 N are needed to stop the arm: with a peak of 0.5 N it cannot be stopped
+    assert_true(isnan(best_settling(&m, arriving, 0.4, 0.05, 0.5)));
+
+    // the band of a force of zero has no width
+    assert_true(isnan(best_settling(&m, arriving, 0, 0.05, 0.5)));
+
+    // a motor with less voltage stops the arm with a higher peak
     pressed_arm_model weak = model_of(SETTINGS("motor.voltage_limit=1.5"));
     check_below(1.02 * best_peak(&m, (pressed_state){0, 1.37}),
                 best_peak(&weak, (pressed_state){0, 1.37}));
@@ -161,13 +206,15 @@ TEST(what_cannot_be_is_said)
 
 // --- controllers tried at random -------------------------------------------------------
 
-// A way of its own through the equation of motion: torques on a grid of times, small
-// steps of the midpoint rule. After the pieces the force is kept at that of the runaway
-// mode, within the band.
+// A second solution of the equation of motion, independent of the one tested: the
+// controller applies up to PIECES forces of 4 ms each, and the motion is integrated by
+// the midpoint rule. After the last piece the controller holds the force of the runaway
+// mode, which then stays as it is, as far as the band allows.
 enum { PIECES = 18 };
 #define PIECE     4e-3 // [s]
 #define FINE_STEP 5e-5 // [s]
 
+// Force at the wall [N] under a motor torque; *rate is the acceleration x'' under it.
 static double force_of(const pressed_arm_model *m, pressed_state s, double torque,
                        double *rate)
 {
@@ -185,8 +232,8 @@ static double torque_for(const pressed_arm_model *m, pressed_state s, double wan
     return fmax(-m->torque_limit, fmin(torque, m->torque_limit));
 }
 
-// What is played: a band about a force, below a peak [N], and what would be news of a
-// try.
+// What a controller is tried for: to settle on a force below a peak [N], and what has
+// been reached so far, by which a try that changes nothing is given up early.
 typedef struct stop_game {
     double force, peak;
     double large;   // a force that every try must reach [N]
@@ -205,7 +252,8 @@ static double try_out(const pressed_arm_model *m, pressed_state s, const double 
     double settled = HUGE_VAL, xi_factor = m->spring_force / divergence(m);
     *largest = 0;
     for (int i = 0; i * FINE_STEP < count * PIECE + 0.25; i++) {
-        // half a step with the piece's force, or the one that is kept
+        // the torque for the piece's force, or after the pieces for the force that is
+        // kept
         int piece = (int)(i * FINE_STEP / PIECE);
         double keep = m->spring_force * s.x + xi_factor * s.velocity;
         keep = fmax(0.95 * game->force, fmin(keep, 1.05 * game->force));
@@ -219,7 +267,7 @@ static double try_out(const pressed_arm_model *m, pressed_state s, const double 
             return HUGE_VAL;
         }
 
-        // whether it can still be news
+        // given up where it settles no sooner than a try before
         *largest = fmax(*largest, f);
         bool inside = fabs(f - game->force) <= 0.0502 * game->force;
         settled = !inside ? HUGE_VAL : fmin(settled, i * FINE_STEP);
@@ -255,6 +303,7 @@ static int draw_controller(random_generator *g, double peak, double pieces[PIECE
 // smaller peak; and some come near it.
 TEST(no_controller_tried_is_better)
 {
+    // velocity after the impact, wanted force, allowed peak [N], limit of the voltage [V]
     const struct {
         double velocity, force, peak, limit;
     } cases[] = {{1.37, 0.5, 1, 10}, {1.37, 0.5, 1.6, 10}, {1.37, 1, 1.05, 10},
@@ -269,7 +318,10 @@ TEST(no_controller_tried_is_better)
         double best = best_settling(&m, start, c->force, 0.05, c->peak);
         double least = best_peak(&m, start);
         assert_true(isfinite(best) && isfinite(least));
-        stop_game game = {c->force, c->peak, 0.999 * least, HUGE_VAL};
+        stop_game game = {.force = c->force,
+                          .peak = c->peak,
+                          .large = 0.999 * least,
+                          .soonest = HUGE_VAL};
         for (int n = 0; n < 4000; n++) {
             double pieces[PIECES], largest;
             int count = draw_controller(&g, c->peak, pieces);
@@ -280,7 +332,8 @@ TEST(no_controller_tried_is_better)
             }
         }
 
-        // nothing beats it, and it is no idle bound: the grid of times comes near
+        // no controller settles before the best stop, and the soonest of them is at most
+        // two pieces later: the bound is reached
         check_below(best - 2e-4, game.soonest);
         check_below(game.soonest, best + 2 * PIECE);
     }

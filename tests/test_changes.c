@@ -25,7 +25,7 @@ TEST(test_typing_replaces_the_value)
     assert_true(ex.input.message.warning);
 }
 
-// The first event of a kind after an instant; fails if there is none.
+// Time [s] of the first event of a kind at or after an instant; fails if there is none.
 static double event_after(const explorer *ex, event_kind kind, double time)
 {
     const trace *t = &ex->model.session.run.trace;
@@ -99,8 +99,10 @@ TEST(test_what_has_no_effect_says_why)
     check_close(session_sample(&ex.model.session)->hub_angle, end, 0);
 }
 
-// What one link's springs and a limited current do is not called without effect, and the
-// other way round.
+// A parameter is called inert (without effect) exactly where nothing depends on it. One
+// link has no spring k2 between links, but a beam at the hub uses it, and a spring at the
+// hub has damping. The motor of the scenario is driven by a voltage: its current is
+// limited, and there is no transconductance.
 TEST(test_inert_is_what_has_no_effect)
 {
     const struct {
@@ -124,6 +126,9 @@ TEST(test_inert_is_what_has_no_effect)
     }
 }
 
+// Under a control law the setting motor.voltage has no effect: the law commands 1 V in
+// the approach. After the parameter is set to 0 the predictions at the next impact (key
+// i) are those of the row's voltage of 1 V.
 TEST(test_predictors_take_the_voltage_in_force)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
@@ -151,7 +156,7 @@ TEST(test_predictors_say_that_they_know_two_links)
     press_shows(&ex, ":set arm.links 2<Enter>", "!the first two know two links");
     press_shows(&ex, ":set arm.links 1<Enter>", said);
 
-    // and one that has nothing to say of an arm says that
+    // a predictor that does not apply to the arm's model says so
     OPEN_EXPLORER(printed, "thesis/fig-3-4");
     assert_shows(&printed, "linearised      does not apply");
 }
@@ -162,12 +167,12 @@ TEST(test_values_that_have_no_room_are_cut_visibly)
     press_shows(&springs, "/link_lengths<Enter>", "0.3, 0.25, 0.25, 0.2");
     assert_shows_at(&springs, 80, 24, "link_lengths  0.3, 0.25, 0..");
 
-    // a word in whole where there is room
+    // a word is shown in whole where there is room
     OPEN_EXPLORER(word, "compare/inverse-dynamics");
     press(&word, "/law<Enter>");
     assert_shows_at(&word, 80, 24, "law          inverse-dynamics");
 
-    // between characters, and right-aligned, for any number of bytes
+    // the cut lies between characters, not bytes, and the value stays right-aligned
     OPEN_EXPLORER(ex, "compare/inverse-dynamics");
     press(&ex, ":set control.command ./xééééééééééééééééééé<Enter>/command<Enter>");
     assert_shows_at(&ex, 80, 24, "command  ./xééééééééééééééé.. │");

@@ -1,6 +1,8 @@
 // The explorer without a terminal: the grid of cells, the panels, keys and commands.
 #include "tests/explorer_on_screen.h"
 
+// Texts end at their width and at the screen's edges; characters that are left of the
+// screen are not drawn, and a control character or a broken byte becomes a question mark.
 TEST(test_text_is_cut_and_cleaned)
 {
     SCOPED(screen_finish) screen s = {0};
@@ -14,6 +16,8 @@ TEST(test_text_is_cut_and_cleaned)
     assert_string_equal(text, "\u03b8?ab\nyz    ??\n");
 }
 
+// A horizontal line far beyond the canvas of 4 x 2 cells at (1, 1) fills its second row
+// and nothing outside; lines with an end that is no number or out of range draw nothing.
 TEST(test_lines_of_dots_stay_within_their_canvas)
 {
     SCOPED(screen_finish) screen s = {0};
@@ -30,6 +34,7 @@ TEST(test_lines_of_dots_stay_within_their_canvas)
     }
 }
 
+// Where only ASCII may be drawn, every screen, page and list consists of it.
 TEST(test_every_glyph_has_a_twin_in_ascii)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -42,6 +47,8 @@ TEST(test_every_glyph_has_a_twin_in_ascii)
     }
 }
 
+// Space plays the run. After two seconds of the clock the arm is at the wall; long after
+// the run's end the playing has stopped.
 TEST(test_playing_shows_an_impact_within_seconds)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -78,7 +85,8 @@ TEST(test_a_lower_voltage_is_compared_with_the_run_before)
                 ex.model.session.other.summary.peak_force_N);
 }
 
-// The number of dots drawn in the column of cells that shows an instant.
+// The largest number of cells with dots (braille, U+2800 to U+28FF) that a column of the
+// plot has.
 static int tallest_column(explorer *ex, int width)
 {
     SCOPED(screen_finish) screen s = {0};
@@ -105,6 +113,7 @@ TEST(test_a_spike_of_one_row_is_drawn)
     assert_true(tallest_column(&ex, 120) >= ex.layout.plot.height - 4);
 }
 
+// With a mark (m) the page of values (Tab) shows differences to it; Escape takes it away.
 TEST(test_values_show_the_difference_to_the_mark)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -113,6 +122,8 @@ TEST(test_values_show_the_difference_to_the_mark)
     press_shows(&ex, "<Esc>", "!from mark");
 }
 
+// In the list of scenarios (o) a slash filters and Enter opens; a name that does not
+// exist leaves the scenario open, and [ opens the one before it in the list.
 TEST(test_the_list_filters_and_opens)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -152,7 +163,8 @@ TEST(test_pages_scroll_to_their_ends)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press_shows(&ex, "?GGjj", ":quit");
     press_shows(&ex, "gkk", ":play");
-    // nothing is drawn between these, which would keep the line within the page
+
+    // keys that are pressed without drawing in between do not scroll past the ends
     press_shows(&ex, "<Esc>cGjjjgk", "this run");
 }
 
@@ -178,6 +190,8 @@ TEST_IN_FOLDER(test_saved_scenario_and_screen)
     }
 }
 
+// A click in the middle of the plot moves the cursor to half of the run of 1 s, within a
+// cell; a click outside of the plot or of the screen moves nothing.
 TEST(test_a_click_moves_the_cursor)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -218,8 +232,9 @@ TEST(test_a_lesson_leaves_the_arm_any_height)
     }
 }
 
-// At the last row before a touch the linearised arm says what "impactlab predict" says,
-// for as many links as there are; while the run plays it is not asked.
+// At the last row before a touch the linearised arm predicts what "impactlab predict"
+// prints (2.614 N in 7 ms), for as many links as there are. While the run plays nothing
+// is predicted: the line shows a dash.
 TEST(test_many_links_are_predicted_while_the_run_rests)
 {
     OPEN_EXPLORER(ex, "corrected/five-links");
@@ -356,6 +371,8 @@ TEST(test_both_sides_of_an_impact_are_told_apart)
     press_shows(&ex, "<Left>m<Right>", "last_velocity           -0.9056    -1.806 ");
 }
 
+// A mark before or after the run of 1 s is refused; with one at its very end a part of
+// 0.1 us can be drawn.
 TEST(test_marks_lie_in_the_run)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -368,8 +385,9 @@ TEST(test_marks_lie_in_the_run)
     press_draws(&ex, ":zoom 0.1 0.1000001<Enter>");
 }
 
-// Any number typed at the prompt is refused or kept within what there is, and the screen
-// drawn: the sanitizers look on.
+// Whatever number is typed at the prompt, each command refuses it or limits it to the
+// range that exists, and the screen is drawn. The sanitizers of the build would report an
+// overflow or an access outside of memory.
 TEST(test_numbers_of_any_size_are_survived)
 {
     static const char *const lines[] = {"step %s",

@@ -122,7 +122,9 @@ void __wrap_draw_swatch(drawing *d, panel_layout *l, int index, double x, double
 
 // ---- pictures
 
-// The picture without its texts; they go into masks.
+// Paints the picture without its texts. Instead, the wrapped drawing of texts appends the
+// shape of each to the global `masks`, for which it paints each alone on the canvas
+// `alone`. The caller frees the masks (free_masks).
 static cairo_surface_t *without_texts(const artwork *a)
 {
     of_alone = cairo_image_surface_create(CAIRO_FORMAT_A8, (int)ceil(a->width * SCALE),
@@ -155,7 +157,9 @@ static const unsigned char *bytes_at(cairo_surface_t *surface, int x, int y)
 
 // ---- texts
 
-// The colour that most of a text's surroundings have.
+// The colour that most of a text's surroundings have: pixels are counted by the upper
+// four bits of red, green and blue, 4096 bins, and the last pixel of the fullest bin is
+// taken.
 static colour ground_of(cairo_surface_t *surface, const letter_mask *m)
 {
     enum { BINS = 4096 };
@@ -185,7 +189,7 @@ static double crossed(cairo_surface_t *surface, const letter_mask *m, colour gro
         for (int i = 0; i < m->width; i++) {
             const unsigned char *p = bytes_at(surface, m->x + i, m->y + j);
             if (m->cover[(ptrdiff_t)j * m->width + i] < 100) {
-                continue;
+                continue; // hardly covered by the letter (of 255)
             }
             letters++;
             on_ink += fabs(p[2] / 255.0 - ground.red) > most ||
@@ -198,7 +202,7 @@ static double crossed(cairo_surface_t *surface, const letter_mask *m, colour gro
 
 static int complaints;
 
-// Told at once, all of them.
+// A complaint is printed and counted, so that one run of the test shows all of them.
 #define complain_of(format, ...) (print_error(format "\n", __VA_ARGS__), complaints++)
 
 // No curve, line or mark crosses a letter, and every letter stands out from its ground.
@@ -213,7 +217,7 @@ static void check_texts(const artwork *a, const char *id, double width)
             complain_of("%s at %g mm: %.0f %% of '%.30s' is crossed by what is drawn", id,
                         width, 100 * share, m->text);
         }
-        if (contrast(m->ink, ground) < 4.5) {
+        if (contrast(m->ink, ground) < 4.5) { // the least of WCAG 2 for text
             complain_of("%s at %g mm: '%.30s' has a contrast of %.1f", id, width, m->text,
                         contrast(m->ink, ground));
         }
@@ -226,7 +230,7 @@ static void check_page(const artwork *a, const figure_report *r, const char *id,
                        double width)
 {
     const figure_rect ink = record_page(a, NULL), page = {0, 0, a->width, a->height};
-    check_close(a->width, width / 25.4 * 72, 1e-6);
+    check_close(a->width, width / 25.4 * 72, 1e-6); // millimetres in points
     if (!rect_is_within(&ink, &page, 1)) {
         complain_of("%s at %g mm: its ink leaves the page", id, width);
     }

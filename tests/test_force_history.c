@@ -50,6 +50,7 @@ static double largest_mean(force_curve f, double from, double window)
     return mean;
 }
 
+// The tests of settling use the band of 5 % about the final force.
 TEST(a_constant_force_has_settled_from_the_start)
 {
     SCOPED(shared_array_finish) shared_array h = history_of(flat);
@@ -58,16 +59,17 @@ TEST(a_constant_force_has_settled_from_the_start)
     assert_true(isnan(force_settled_since(&h, 4)));
 }
 
+// The force 2 t enters the band about 2 N at 1.9 N, that is at 0.95 s.
 TEST(a_rising_force_settles_where_it_enters_the_band)
 {
     SCOPED(shared_array_finish) shared_array h = history_of(rising);
     check_close(force_settled_since(&h, 2), 0.95, 1e-12);
 }
 
+// A single step is a parabola, and the instant of settling may lie inside it.
 TEST(the_band_is_entered_within_a_step)
 {
-    // up and down again to nothing: 4 t (1 - t) = 0.05 f where the band round f ends from
-    // below
+    // a force that returns to zero at the end has not settled on 0.5 N
     SCOPED(shared_array_finish) shared_array h = history_of(parabola);
     assert_true(isnan(force_settled_since(&h, 0.5)));
     shared_array_finish(&h);
@@ -86,6 +88,9 @@ static force_step parabolic_step(double start, double end, double first, double 
                         first + slope / 2 + curve / 3};
 }
 
+// Straight steps to half of the final force, to the lower edge of the band and to the
+// final force: it settles at the end of the second step, in any unit of force (powers of
+// two).
 TEST(a_line_that_meets_the_band_at_a_steps_end_settles_there)
 {
     for (int power = -40; power <= 40; power += 10) {
@@ -107,8 +112,10 @@ TEST(a_force_at_the_edge_of_its_band_has_settled)
 {
     double final = 1;
     while (final + SETTLED_BAND * final - final != SETTLED_BAND * final) {
-        final += 0.0625; // until the edge is a number
+        final += 0.0625; // until the edge of the band is exact in floating point
     }
+
+    // up to twice the final force, and back to the edge along a line or a parabola
     const double edge = final + SETTLED_BAND * final;
     const force_step steps[] = {{0, 1, final, 2 * final, 1.5 * final},
                                 {1, 2, 2 * final, edge, (2 * final + edge) / 2},
@@ -138,8 +145,9 @@ TEST(a_history_keeps_all_of_its_steps)
     }
 }
 
-// Steps as long as their lines are steep, with what rounding leaves of their curves: the
-// instant of the crossing is that of the line, for any unit of the force.
+// A step of 1 s is a straight line that crosses the lower edge of the band at a random
+// share of the step; rounding leaves it a curvature of nearly zero. The instant found is
+// that share, whatever the unit of the force (1e-6 to 1e6).
 TEST(lines_are_crossed_where_they_are)
 {
     random_generator g = seeded(5);

@@ -19,7 +19,8 @@ static void finish(run_result *r)
     shared_array_finish(&r->history.forces);
 }
 
-// A parabola first + slope s + curve s^2 of the share of a step.
+// Adds a step whose force is first + slope s + curve s^2, where s goes from 0 to 1 over
+// the step.
 static void add_step(run_result *r, double start, double end, double first, double slope,
                      double curve)
 {
@@ -50,6 +51,9 @@ TEST(a_hump_is_met_in_its_middle)
     finish(&r);
 }
 
+// A force of 1 N with impulses of 0.02 and 0.01 N s, 4 ms apart. A window of 5 ms holds
+// both, one of 3 ms only the larger: the mean rises by the impulse over the window's
+// length.
 TEST(an_impulse_counts_over_the_window)
 {
     run_result r = empty_run();
@@ -60,6 +64,8 @@ TEST(an_impulse_counts_over_the_window)
     add_impulse(&r, 0.7, 1, true); // in the force of its step already
     check_close(force_largest_mean(&r, 0, 0.005), 1 + 0.03 / 0.005, 1e-12);
     check_close(force_largest_mean(&r, 0, 0.003), 1 + 0.02 / 0.003, 1e-12);
+
+    // windows from 0.302 s on hold the second impulse, those from 0.305 s on none
     check_close(force_largest_mean(&r, 0.302, 0.003), 1 + 0.01 / 0.003, 1e-12);
     check_close(force_largest_mean(&r, 0.305, 0.003), 1, 1e-12);
 
@@ -100,7 +106,9 @@ static double force_at(const run_result *r, double time)
     return steps[i].first + s * (steps[i].last - steps[i].first - curve + s * curve);
 }
 
-// No window at a fine grid has a larger mean than the one found, and one has nearly that.
+// Sixty parabolic steps of 4 to 16 ms. Of the windows that begin on a fine grid, with
+// means summed at 400 points, none has a larger mean than the largest mean found, and the
+// largest of them is nearly as large.
 TEST(it_is_the_largest_of_many)
 {
     enum { FINE = 4000 };
@@ -152,7 +160,10 @@ TEST(no_window_of_random_forces_has_more)
     for (int round = 0; round < ROUNDS; round++) {
         run_result r = empty_run();
         double time = 0, last = 1;
-        const double unit = round % 2 ? 1 : 50; // of time
+
+        // six parabolic steps, of 0.1 to 0.3 of a unit of time [s]; every third history
+        // has an impulse, too
+        const double unit = round % 2 ? 1 : 50;
         for (int i = 0; i < 6; i++) {
             const double length = unit * (0.1 + 0.2 * random_uniform(&g));
             const double slope = 4 * random_uniform(&g) - 2,
@@ -167,6 +178,7 @@ TEST(no_window_of_random_forces_has_more)
             add_impulse(&r, at, impulse, false);
         }
 
+        // the largest mean of the windows on a grid of starts
         const double window = unit * (0.03 + 0.4 * random_uniform(&g));
         const double from = unit * 0.1 * random_uniform(&g);
         const double found = force_largest_mean(&r, from, window);
@@ -178,15 +190,18 @@ TEST(no_window_of_random_forces_has_more)
             seen = fmax(seen,
                         (integral_to(&r, end) - integral_to(&r, start) + hit) / window);
         }
-        // without impulses a window's mean is smooth but for kinks
+
+        // without impulses the mean changes little from one start to the next, so the
+        // grid comes close; an impulse may just be missed
         check_below(seen, found + 1e-10);
         check_below(found, seen + (impulse > 0 ? 0.1 : 1e-4));
         finish(&r);
     }
 }
 
-// The largest force at the start of a history that fills its memory: behind it nothing
-// has more.
+// A history that fills its memory to the last step, with its largest force at the start.
+// The force falls from 5 N to 1 N in the first second: the mean over its first 0.25 s is
+// 5 - 4 * 0.125 = 4.5 N, and 1 N from then on.
 TEST(a_full_history_is_looked_at_to_its_end)
 {
     run_result r = empty_run();

@@ -5,6 +5,8 @@
 
 enum { SEEDS = 400 };
 
+// The exam of the scenario's own law and force-pd, at 1 N and 3 N. Verdicts and shares
+// are asked for by law 0 or 1 and force 0 or 1.
 static law_exam examined(const scenario *s, size_t cases, uint64_t seed)
 {
     law_exam e;
@@ -19,6 +21,7 @@ static law_exam examined(const scenario *s, size_t cases, uint64_t seed)
     return e;
 }
 
+// Whether two settings "path=value" set the same parameter.
 static bool same_path(const char *a, const char *b)
 {
     const size_t length = strcspn(a, "=");
@@ -42,11 +45,12 @@ TEST(errors_of_a_case_exclude_one_another)
         }
     }
 
-    // one in two, within five deviations
+    // three errors in half of the cases, within five standard deviations sqrt(n)/2
     check_close(threes, SEEDS / 2, 5 * sqrt(SEEDS) / 2);
 }
 
-// Every kind is drawn, and drawn around what the scenario has.
+// Every kind of error is drawn, and its value lies around the scenario's own: an arm of 2
+// m within a quarter of its length, the arm before the wall at 0.3 rad.
 TEST(errors_are_drawn_around_the_scenario)
 {
     KEPT_SCENARIO(s) =
@@ -70,7 +74,8 @@ TEST(errors_are_drawn_around_the_scenario)
     }
 }
 
-// Rates and jitters are drawn apart, and go together in every case.
+// A rate of the controller and a jitter of its sampling are drawn independently. In every
+// case the jitter is at most the period, and in some cases it has been cut to the period.
 TEST(a_jitter_stays_within_the_period)
 {
     KEPT_SCENARIO(s) = shipped("compare/observer");
@@ -105,7 +110,9 @@ TEST(pushes_keep_the_actions_of_the_scenario)
     free(actions);
 }
 
-// What the exam says of a case is what a run of that case gives.
+// The exam's verdict on a case is that of a single run of the case. Forces are in percent
+// of the first force, 1 N. Where the case has a push, settling counts from the push (or
+// from the contact, if that is later), otherwise from the contact.
 TEST(verdicts_are_those_of_single_runs)
 {
     KEPT_SCENARIO(s) = shipped("compare/observer");
@@ -135,8 +142,9 @@ TEST(verdicts_are_those_of_single_runs)
     }
 }
 
-// Shares of all cases and of those with a kind of error are counts, with an interval by
-// Wilson; 0 of n ends at z^2/(n + z^2).
+// The share of the cases within the bounds is a count, over all cases (kind -1) or those
+// with one kind of error. Its 95 % interval is Wilson's, with the normal quantile z
+// = 1.96; for no case of n it ends at z^2/(n + z^2).
 TEST(shares_count_cases)
 {
     KEPT_SCENARIO(s) = shipped("compare/observer");
@@ -152,6 +160,8 @@ TEST(shares_count_cases)
         }
     }
     assert_int_equal(of_kinds, of_errors);
+
+    // no case of 20
     const exam_share none = law_exam_share(&e, 0, 0, -1);
     assert_int_equal(none.within, 0);
     check_close(none.low, 0, 1e-15);
@@ -165,8 +175,9 @@ static json_t *member_of_result(json_t *whole, size_t row, const char *key)
     return json_object_get(json_array_get(results, row), key);
 }
 
-// Beside its own rows a law gains and loses nothing; beside another law what the marks
-// say. Rows of other cases are refused.
+// Compared with earlier rows of the same law and cases no case is gained or lost.
+// Compared with another law the gained and lost cases are those where the marks of the
+// two differ. Rows of an exam of other cases are refused, as are files that hold no exam.
 TEST_IN_FOLDER(exams_are_compared_case_by_case)
 {
     KEPT_SCENARIO(s) = shipped("compare/observer");
@@ -209,7 +220,8 @@ TEST_IN_FOLDER(exams_are_compared_case_by_case)
             exam_rows_read(&rows, "none.json", &other, &f));
 }
 
-// An error that does not go with the scenario is refused before the first run.
+// The printed model of the arm excludes some errors: the exam is refused before the first
+// run.
 TEST(what_cannot_be_drawn_is_told)
 {
     KEPT_SCENARIO(s) = shipped("compare/hybrid-printed-arm");

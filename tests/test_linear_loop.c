@@ -91,13 +91,14 @@ TEST(margins_are_met_by_the_poles)
     }
 }
 
-// A number whose logarithm is spread evenly.
+// A random number whose logarithm is spread evenly.
 static double between(random_generator *g, double from, double to)
 {
     return from * pow(to / from, random_uniform(g));
 }
 
-// An arm and its law, drawn.
+// The settings of a random arm with a random law. Each law's gain lies about a usual
+// value.
 static const char *drawn_loop(random_generator *g)
 {
     static const char *const joints[] = {"rigid", "beam"};
@@ -116,8 +117,8 @@ static const char *drawn_loop(random_generator *g)
         between(g, 0.002, 0.01));
 }
 
-// How much wider the force swings between 6 and 7 s than between 2 and 3 s, after a small
-// push.
+// Ratio of the force's swing (largest minus smallest) between 6 and 7 s to that between 2
+// and 3 s, after a small push at 1.5 s: below one where the loop is stable.
 static double swing_grows(const char *changes)
 {
     KEPT_SCENARIO(s) = shipped_with("compare/force-pd", changes);
@@ -139,7 +140,9 @@ static double swing_grows(const char *changes)
     return swing[1] / swing[0];
 }
 
-// The largest pole of a loop whose gain is so many times larger, closed.
+// The largest absolute value of the poles of the closed loop whose open-loop gain is
+// multiplied by a factor. linear_poles sorts by absolute value, so the last is the
+// largest.
 static double radius_of(const scenario *s, double factor)
 {
     SCOPED(linear_system_finish) linear_system loop = loop_of(s);
@@ -152,8 +155,10 @@ static double radius_of(const scenario *s, double factor)
     return cabs(poles[loop.states - 1]);
 }
 
-// Margins of drawn arms and laws part runs that fade from runs that swing on, and poles
-// within the circle from those outside. The first margin is a part of a period.
+// The margins of random arms and laws are where stability ends. At 0.999 of the gain
+// margin the poles of the closed loop lie within the unit circle, at 1.001 of it one lies
+// outside. At 0.95 of the delay margin a run fades, at 1.05 of it the run keeps swinging.
+// The first loop is fixed: its delay margin is less than its sampling period of 5 ms.
 TEST(margins_part_runs)
 {
     static const char *const first =
@@ -167,8 +172,10 @@ TEST(margins_part_runs)
         const char *changes = i == 0 ? first : drawn_loop(&g);
         KEPT_SCENARIO(s) = shipped_with("compare/force-pd", changes);
         if (radius_of(&s, 1) > 1) {
-            continue;
+            continue; // unstable from the start: it has no margins
         }
+
+        // the margins of the loop
         SCOPED(linear_system_finish) linear_system loop = loop_of(&s);
         linear_arm l;
         linear_response r;
@@ -186,6 +193,8 @@ TEST(margins_part_runs)
         if (i == 0) {
             check_relative(m.delay_s, 3.468e-3, 1e-3);
         }
+
+        // on either side of the delay margin, for delays that a run can have
         for (int more = 0; more < 2 && m.delay_s < 4.5 * period; more++) {
             const double delay = (more ? 1.05 : 0.95) * m.delay_s;
             const char *late = formatted("%scontrol.delay=%.9g belief.delay_error=-%.9g",
@@ -197,7 +206,8 @@ TEST(margins_part_runs)
     check_below(40, compared);
 }
 
-// A loop that answers with a millionth of what it is given has no gain margin.
+// A loop whose gain where the phase is -180 degrees is below a millionth has no gain
+// margin; with a gain of 1e-5 there the margin is 20 log10(1e5) = 100 dB.
 TEST(no_gain_that_matters_is_no_margin)
 {
     double complex gain[3] = {complex_of(-1e-7, 1e-9), complex_of(-1e-7, -1e-9), 0};
