@@ -1,3 +1,4 @@
+// The colours of pictures: of themes, of series and of a continuous scale.
 #include "render/page/page.h"
 
 #include <assert.h>

@@ -1,3 +1,4 @@
+// Curves: the values of a series, and its line cut to a panel and drawn.
 #include "render/plot/axis.h"
 
 #include <math.h>

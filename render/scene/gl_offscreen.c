@@ -1,3 +1,4 @@
+// OpenGL without a window, by OSMesa or EGL, loaded when a scene is drawn.
 #include "render/scene/scene_parts.h"
 
 #include <assert.h>

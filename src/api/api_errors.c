@@ -1,3 +1,5 @@
+// The errors of the C library: what went wrong in a call, in words and numbers for its
+// caller.
 #include "src/api/api_handles.h"
 
 #include <stdarg.h>
