@@ -69,6 +69,8 @@ static void check_optimal(const sampled_model *m, const quadratic_cost *c,
     }
 }
 
+// check_optimal asks for the condition under which no other gain costs less. The models
+// are invented: two states as of the arm in contact, and five states that are coupled.
 TEST(doubling_makes_the_cost_least)
 {
     // the arm in contact at 200 Hz, with and without errors asked to die faster

@@ -72,6 +72,7 @@ static double rise_to(double level)
     return t;
 }
 
+// After a step the sensor goes from 10 % to 90 % within its rise time, 1.5 ms.
 TEST(force_sensor_rises_in_its_time)
 {
     check_close(rise_to(0.9) - rise_to(0.1), 1.5e-3, 4e-6);
@@ -79,7 +80,8 @@ TEST(force_sensor_rises_in_its_time)
 
 TEST(force_sensor_follows_a_stride_exactly)
 {
-    // f = 2 - 3 u + 5 u^2 over 4 ms, at once and in a thousand short strides
+    // f = 2 - 3 u + 5 u^2 with u from 0 to 1 over 4 ms: it ends at 4, its mean is
+    // 2 - 3/2 + 5/3; at once, and in a thousand short strides from u = a to b
     const double h = 4e-3;
     sensors once = fresh_sensors(NULL, 1), often = once;
     once.fsr.value = often.fsr.value = 0.7;
@@ -338,7 +340,8 @@ TEST(turns_within_a_stride_move_the_play)
             }
             check_close(once.fsr_shown, often.fsr_shown, 1e-5);
 
-            // which the ends alone do not always tell
+            // the play that the ends of the stride alone would give (0.8 and 1.2 are its
+            // edges, at a share of 0.2) differs where the force turns within
             ends.p.fsr_hysteresis = 0;
             follow_force(&ends, h, a, a + b + d, a + b / 2 + d / 3);
             const double end = ends.fsr_shown, start = starts[i % 3];

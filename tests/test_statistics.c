@@ -11,6 +11,9 @@ static void add(trace *t, double time, double force)
     assert_int_equal(trace_add_row(t, &row, none, none), STATUS_OK);
 }
 
+// The force rises from 0 to 2 N within a second, jumps to 5 N and stays there for another
+// second. Expected: the areas of a triangle (1) and a rectangle (5); for the mean square
+// the integrals of (2 t)^2 and 25 over a second each, 4/3 and 25.
 TEST(a_ramp_and_a_step)
 {
     const int force = SIGNAL_INDEX(force);

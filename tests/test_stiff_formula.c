@@ -90,6 +90,7 @@ TEST(weights_are_those_of_the_polynomial)
     }
 }
 
+// 0.5 + 3 x - 4 x^2 + 2 x^3 + 5 x^7, with its first two derivatives.
 static double polynomial(double x, double *slope, double *bend)
 {
     *slope = 3 - 8 * x + 6 * x * x + 35 * power(x, 6);

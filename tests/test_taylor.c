@@ -86,6 +86,8 @@ static void check_place(moving_arm *moving, double h)
     check_close(gap_acceleration, m->trial[SLOT_GAP_ACCELERATION], 2e-10 * scale);
 }
 
+// Random states of all arms, in flight and on the wall: at nine places of each stride the
+// series satisfy the equations of motion.
 TEST(the_series_solve_the_equations_all_over_the_stride)
 {
     random_generator g = seeded(1);
@@ -190,9 +192,12 @@ static motion_event step_cut(const moving_arm *moving, double until, double afte
     return report.event;
 }
 
-// A motion that is cut where nothing happens goes on in the same stride: it comes to
-// where one does that nobody cuts, but for rounding. One that is handed over at each cut,
-// to a motion that knows the state alone, comes there to the last bit.
+// The same motion is taken to its first event in three ways. `whole` goes there without a
+// cut. `cut` is stopped at random instants and goes on in the same stride: the state at
+// the event is that of `whole`, but for rounding. The third way is stopped at the same
+// instants, but each time the state is handed to another motion that knows nothing else;
+// made[2] and made[3] take turns. Its state at the event is that of `cut`, to the last
+// bit.
 TEST(cut_strides_go_on)
 {
     enum { UNTIL = 1 };
@@ -207,7 +212,7 @@ TEST(cut_strides_go_on)
         motion *whole = made[0].motion, *cut = made[1].motion;
         const size_t size = (size_t)cut->size * sizeof(double);
 
-        // to the first event
+        // each to its first event; 5 - turn is the motion that waits, 3 or 2
         motion_report report;
         motion_event met = MOTION_REACHED, handed = MOTION_REACHED;
         int turn = 2;
@@ -228,6 +233,8 @@ TEST(cut_strides_go_on)
         assert_int_equal(met, report.event);
         assert_int_equal(handed, report.event);
         assert_memory_equal(cut->state, made[turn].motion->state, size);
+
+        // angles, velocities and integrals of the motion that nobody cut
         for (int k = 0; k < 2 * cut->dof + QUADRATURE_COUNT; k++) {
             const double scale = 1 + fabs(whole->state[SLOT_COUNT + k]);
             check_close(cut->state[SLOT_COUNT + k], whole->state[SLOT_COUNT + k],
@@ -451,8 +458,9 @@ TEST(an_arm_in_fast_rotation_is_released_once)
     assert_true(releases >= 60);
 }
 
-// So do random arms with an amplifier a hundred times too strong, whose last bits count
-// for more.
+// Arms with an amplifier a hundred times too strong, for which rounding counts for more,
+// also leave the wall once for each touch (count_releases checks it). Their
+// numbers have all their digits for that reason.
 TEST(a_strong_motor_releases_once)
 {
     const char *const *const strong[] = {
