@@ -151,8 +151,9 @@ TEST(test_ticks_are_round)
     assert_shows(&ex, "0.2935");
 }
 
-// Keys: z halves the visible part, ( and ) move it back and forth by a quarter,
-// Shift-Left by more, f lets it follow the cursor again, 0 shows the whole run of 1 s.
+// Keys: z halves the visible part; ( and ), or Shift-Left and Shift-Right, move it back
+// and forth by a quarter; f lets it follow the cursor again; 0 shows the whole run of 1
+// s.
 TEST(test_the_visible_part_follows_the_cursor_until_it_is_panned)
 {
     double from, to;
@@ -256,7 +257,7 @@ TEST(test_ranges_of_long_runs_are_exact)
     carry_out(&ex, "extend 99");
     carry_out(&ex, "seek end");
     const trace *t = &ex.model.session.run.trace;
-    assert_true(t->row_count > 90000); // a row each millisecond or more for 100 s
+    assert_true(t->row_count > 90000); // 100 s, some thousand rows a second
     int velocity = SIGNAL_INDEX(last_velocity), angle = SIGNAL_INDEX(last_angle);
     carry_out(&ex, "trace last_velocity last_angle");
 

@@ -75,8 +75,7 @@ TEST(impulse_is_the_change_of_momentum)
     }
 }
 
-// The impact at the tip turns the second link back and the first one on, whatever the
-// state it happens in.
+// The impact turns the two links in opposite directions, in each of fifty random states.
 TEST(increments_of_the_two_links_have_opposite_signs)
 {
     for (int seed = 0; seed < 50; seed++) {

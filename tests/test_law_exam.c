@@ -75,7 +75,7 @@ TEST(errors_are_drawn_around_the_scenario)
 }
 
 // A rate of the controller and a jitter of its sampling are drawn independently. In every
-// case the jitter is at most the period, and in some cases it has been cut to the period.
+// case the jitter is at most the period, and in some cases it is nearly as long.
 TEST(a_jitter_stays_within_the_period)
 {
     KEPT_SCENARIO(s) = shipped("compare/observer");
