@@ -201,6 +201,28 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
     g_hash_table_destroy(ids);
 }
 
+// An id holds for the whole page that a picture stands in.
+TEST(svgs_of_different_pictures_share_no_id)
+{
+    publish(&(figure_options){0}, "one.svg");
+    publish(&(figure_options){.look.theme = THEME_DARK}, "two.svg");
+    publish(&(figure_options){0}, "one-again.svg");
+    KEPT_TEXT(one) = file_text("one.svg");
+    KEPT_TEXT(two) = file_text("two.svg");
+    KEPT_TEXT(again) = file_text("one-again.svg");
+    assert_string_equal(one, again);
+
+    // no id of the one is a word of the other
+    int ids = 0;
+    for (char *c = strstr(one, " id=\""); c != NULL; c = strstr(c, " id=\"")) {
+        c += 5;
+        const char *id = formatted("%.*s", (int)strcspn(c, "\""), c);
+        fail_if(strstr(two, id) != NULL, "both pictures have '%s'", id);
+        ids++;
+    }
+    assert_true(ids > 10);
+}
+
 // The CSV of a figure is headed by the axes' names and units, those of different
 // quantities by each.
 TEST(csv_holds_what_is_drawn)

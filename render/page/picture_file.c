@@ -370,7 +370,7 @@ static GString *svg_metadata(const picture *p)
 // Lets cairo write an SVG into memory and adds the metadata to its root.
 char *picture_svg(const picture *p, fault *f)
 {
-    char *numbered = NULL;
+    char *whole = NULL;
     GString *svg = g_string_new(NULL);
     cairo_surface_t *surface =
         cairo_svg_surface_create_for_stream(to_string, svg, p->width, p->height);
@@ -387,10 +387,10 @@ char *picture_svg(const picture *p, fault *f)
             g_string_insert(svg, end + 1 - svg->str, metadata->str);
             g_string_free(metadata, TRUE);
         }
-        numbered = svg_renumber_ids(svg->str, "");
+        whole = svg_own_ids(svg->str);
     }
     g_string_free(svg, TRUE);
-    return numbered;
+    return whole;
 }
 
 status picture_write_pages(const picture *pages, int count, const char *path, fault *f)

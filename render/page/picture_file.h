@@ -85,13 +85,18 @@ typedef struct png_note {
 status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
                       const png_note *notes, int note_count, fault *f);
 
-// --- SVG text: ids that do not depend on what was drawn before, and fewer bytes: svg.c
+// --- SVG text: ids that follow from the picture alone, and fewer bytes: svg.c
 
 // cairo makes ids from counters of the whole process ("surface96"), so that the second
-// figure of a program differs from the first. Returns the SVG with the number in every
-// id="name<number>", and in every reference to it, replaced by its place in the order of
-// the ids, and with a prefix before it. Free the result with g_free.
+// figure of a program differs from the first. Returns the SVG with every id, and every
+// reference to it, replaced by a prefix and its place in the order of the ids. Free the
+// result with g_free.
 char *svg_renumber_ids(const char *svg, const char *prefix);
+
+// The same with a prefix from the SVG's content, so that different SVGs share no id and
+// can stand in one page, where an id holds for the whole page; the same picture has the
+// same bytes.
+char *svg_own_ids(const char *svg);
 
 // The SVG as an element of a page with others, in fewer bytes: without the XML
 // declaration and metadata; with a prefix before every id; lengths to a hundredth of a

@@ -1,10 +1,11 @@
-// SVG text: ids that do not depend on what was drawn before, and pictures in fewer bytes.
+// SVG text: ids that follow from the picture alone, and pictures in fewer bytes.
 #include "render/page/picture_file.h"
 
 #include <string.h>
 
 #include "render/page/text.h"
 #include "src/base/numbers.h"
+#include "src/base/sha256.h"
 
 // ==== ids
 
@@ -18,16 +19,13 @@ typedef struct id_names {
     const char *prefix;
 } id_names;
 
-// Gives an id a new name: its letters and its place among all.
+// Gives an id a new name: the prefix and its place among all.
 static gboolean collect_id(const GMatchInfo *match, GString *out, gpointer context)
 {
     (void)out;
     const id_names *n = context;
-    char *id = g_match_info_fetch(match, 2);
-    const int letters = (int)strcspn(id, "0123456789");
-    g_hash_table_insert(n->names, id,
-                        text_printf("%s%.*s%u", n->prefix, letters, id,
-                                    g_hash_table_size(n->names)));
+    g_hash_table_insert(n->names, g_match_info_fetch(match, 2),
+                        text_printf("%s%u", n->prefix, g_hash_table_size(n->names)));
     return FALSE;
 }
 
@@ -47,6 +45,26 @@ char *svg_renumber_ids(const char *svg, const char *prefix)
         g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     g_free(text_replaced(&set_id, svg, collect_id, &(id_names){names, prefix}));
     return text_replaced(&any_id, svg, rename_id, names);
+}
+
+// Forty bits of a digest: that two of a thousand pictures have the same ones happens once
+// in two million times.
+#define DIGEST_LETTERS 10
+
+// The digest is that of the SVG with ids by their places, which is the same wherever and
+// whenever it is drawn.
+char *svg_own_ids(const char *svg)
+{
+    g_autofree char *placed = svg_renumber_ids(svg, "i");
+    sha256 digest;
+    char digits[SHA256_TEXT];
+    sha256_init(&digest);
+    sha256_add_text(&digest, placed);
+    sha256_finish(&digest, digits);
+
+    // a name of XML begins with a letter
+    g_autofree char *prefix = text_printf("i%.*s-", DIGEST_LETTERS, digits);
+    return svg_renumber_ids(placed, prefix);
 }
 
 // Outlines of earlier SVGs by what is in them, and what this SVG's ids become.

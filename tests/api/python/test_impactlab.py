@@ -1,5 +1,6 @@
 """The Python package over the shared library. Tests assert results, never time."""
 
+import base64
 import copy
 import gc
 import json
@@ -252,8 +253,17 @@ def test_environment_has_the_shape_of_gymnasium():
 def test_figures_show_themselves():
     if impactlab.program() is None:
         pytest.skip("the program is not there")
-    svg = Scenario(FIRST).run()._repr_svg_()
-    assert svg is not None and "<svg" in svg[:500]
+    run = Scenario(FIRST).run()
+    shown = run._repr_html_()
+    before, data = shown.split("base64,")
+    assert before == '<img src="data:image/svg+xml;'
+    image, said = data.split('" alt="')
+    assert "<svg" in base64.b64decode(image).decode()[:500] and "peak force 1.33" in said
+    assert run.png(100)[:8] == b"\x89PNG\r\n\x1a\n" and len(run.png(300)) > len(run.png(100))
+    with pytest.raises(RuntimeError, match="dpi"):
+        run.png(5)
+    with pytest.raises(RuntimeError, match="controller"):
+        Scenario(FIRST).run(controller=lambda reading: 1).svg()
 
 
 def test_frames():

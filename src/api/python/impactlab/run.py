@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import ctypes
+import html
 import os
 import subprocess
 import tempfile
@@ -230,21 +232,37 @@ class Run(Owner):
         frame.attrs["units"] = {name: SIGNALS[name].unit for name in frame.columns}
         return frame
 
-    def _repr_svg_(self) -> Optional[str]:
-        """The figure that `impactlab run --plot` draws, for Jupyter."""
+    def svg(self) -> str:
+        """The figure that `impactlab run --plot` draws, as the text of an SVG file."""
+        return self._drawn("svg").decode()
+
+    def png(self, dpi: float = 200) -> bytes:
+        """The same figure as the bytes of a PNG file of `dpi` dots per inch."""
+        return self._drawn("png", "--dpi", str(dpi))
+
+    def _repr_html_(self) -> Optional[str]:
+        """The figure as an image with its data, for Jupyter: ids of its own, whatever page it is in."""
+        if library.program() is None or self._scenario is None:
+            return None
+        data = base64.b64encode(self._drawn("svg")).decode()
+        return f'<img src="data:image/svg+xml;base64,{data}" alt="{html.escape(repr(self))}">'
+
+    def _drawn(self, kind: str, *options: str) -> bytes:
+        """The bytes of the figure that the program draws; RuntimeError with its reason."""
         program = library.program()
         if program is None or self._scenario is None:
-            return None
+            raise RuntimeError("no program impactlab is there to draw the run" if program is None else
+                               "a figure is drawn of a scenario's own run, without a controller")
         with tempfile.TemporaryDirectory() as folder:
-            scenario, figure = os.path.join(folder, "run.yaml"), os.path.join(folder, "run.svg")
+            scenario, figure = os.path.join(folder, "run.yaml"), os.path.join(folder, "run." + kind)
             with open(scenario, "w", encoding="utf-8") as file:
                 file.write(self._scenario.yaml)
-            subprocess.run([program, "run", scenario, "--quiet", "--plot", figure], check=False,
-                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            said = subprocess.run([program, "run", scenario, "--quiet", "--plot", figure, *options],
+                                  check=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
             if not os.path.exists(figure):
-                return None
-            with open(figure, encoding="utf-8") as file:
-                return file.read()
+                raise RuntimeError(said.stderr.decode(errors="replace").strip())
+            with open(figure, "rb") as drawn:
+                return drawn.read()
 
     def __repr__(self) -> str:
         return (f"<Run {self.status}: first contact {self.first_contact_s:.6g} s, peak force "
