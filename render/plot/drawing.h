@@ -29,7 +29,7 @@ double placement_ink(const placement *g, figure_rect r);
 
 // --- the layout
 
-enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8 };
+enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8, NOTES_PLACED = 24 };
 
 // Lengths [pt].
 #define POINTS_PER_MM (72 / 25.4)
@@ -77,6 +77,7 @@ typedef struct panel_layout {
     axis y;
     axis colours;                             // of the colour scale, if the panel has one
     figure_rect level_place[LEVELS_LABELLED]; // of the labels of levels; width 0: none
+    figure_rect note_place[NOTES_PLACED];     // of the texts of notes; width 0: none
     double strip_top;   // of the strip for impulses, if there are any
     bool legend_row;    // the legend stands above the panel
     bool legend_column; // it does, with its entries one above the other

@@ -144,7 +144,11 @@ void figure_size(const figure *fig, double *width, double *height)
     // rows of panels
     for (int i = 0; i < fig->panel_count; i += columns) {
         const figure_panel *p = &fig->panels[i];
-        points += panel_weight(p) * panel + PANEL_SPACE;
+        double high = panel_weight(p) * panel;
+        if (fig->equal_axes) {
+            high = fmin(high, figure_width(fig) * POINTS_PER_MM - SIDES);
+        }
+        points += high + PANEL_SPACE;
         if (p->impulse_count > 0) {
             points += STRIP_HEIGHT + STRIP_SPACE;
         }

@@ -71,6 +71,7 @@ typedef struct figure_series {
     double radius;      // of markers [pt]; 0: the style's
     bool secondary;     // thinner and dashed, for a second run of the same quantity
     bool no_line;       // markers only
+    bool own_style;     // keeps its style whatever other series have
     bool rim;           // with a rim of the page's colour, so that it is visible on a map
 } figure_series;
 
@@ -121,6 +122,7 @@ typedef struct figure_interval {
 typedef struct figure_note {
     double x, y;
     const char *text;
+    bool optional; // left out where nothing near its point is free
 } figure_note;
 
 // An impulse, which cannot be shown on the panel's own axis. It is drawn as an arrow in a
@@ -176,6 +178,7 @@ typedef struct figure {
     double letters;   // size of labels [pt]; 0: 8
     bool bare;        // without title and caption
     bool transparent; // without a background
+    bool equal_axes;  // a unit is as long on the one axis as on the other; both linear
     bool shared_y;    // all panels have one vertical axis, labelled in the first column
     const char *parameters; // plain, for the file's metadata
 } figure;

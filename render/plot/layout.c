@@ -355,6 +355,34 @@ static void place_rows(drawing *d, int mark_rows)
     }
 }
 
+// ---- equal axes
+
+// Widens a scale about its middle to a length.
+static void widen_to(axis_scale *s, double length)
+{
+    const double middle = (s->low + s->high) / 2;
+    s->low = middle - length / 2;
+    s->high = middle + length / 2;
+}
+
+// Widens one axis of each panel until a unit is as long on both. All panels have boxes of
+// one width and one horizontal axis.
+static void equal_units(drawing *d)
+{
+    double unit = HUGE_VAL; // [pt]
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        const plane *p = &d->panels[i].plane;
+        unit = fmin(unit, p->box.width / (d->x.scale.high - d->x.scale.low));
+        unit = fmin(unit, p->box.height / (p->y.high - p->y.low));
+    }
+    widen_to(&d->x.scale, d->panels[0].plane.box.width / unit);
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        plane *p = &d->panels[i].plane;
+        widen_to(&p->y, p->box.height / unit);
+        p->x = d->x.scale;
+    }
+}
+
 // ---- inside the panels
 
 typedef struct ink_sink {
@@ -415,6 +443,24 @@ static bool fill_panels(drawing *d, placement *grid)
 
 // ---- the whole
 
+// Chooses the ticks of the vertical axes and of the colour scales.
+static void choose_vertical_ticks(drawing *d)
+{
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        panel_layout *l = &d->panels[i];
+        double height = l->plane.box.height, spacing = Y_TICK;
+        if (l->plane.y.kind == SCALE_LOGARITHMIC) {
+            spacing = DECADE_TICK;
+        }
+        l->y.scale = l->plane.y;
+        axis_choose_ticks(&l->y, &l->panel->y, axis_tick_count(height, spacing, 2, 8));
+        if (l->panel->colours != NULL) {
+            axis_choose_ticks(&l->colours, &l->panel->colours->axis,
+                              axis_tick_count(height, BAR_TICK, 2, 8));
+        }
+    }
+}
+
 // Places rows and columns and chooses ticks, each of which depends on the others.
 static void place_all(drawing *d, int *mark_rows)
 {
@@ -422,23 +468,12 @@ static void place_all(drawing *d, int *mark_rows)
     // texts
     for (int pass = 0; pass < 3; pass++) {
         place_rows(d, *mark_rows);
-
-        // ticks of all axes
-        for (int i = 0; i < d->fig->panel_count; i++) {
-            panel_layout *l = &d->panels[i];
-            double height = l->plane.box.height, spacing = Y_TICK;
-            if (l->plane.y.kind == SCALE_LOGARITHMIC) {
-                spacing = DECADE_TICK;
-            }
-            l->y.scale = l->plane.y;
-            axis_choose_ticks(&l->y, &l->panel->y,
-                              axis_tick_count(height, spacing, 2, 8));
-            if (l->panel->colours != NULL) {
-                axis_choose_ticks(&l->colours, &l->panel->colours->axis,
-                                  axis_tick_count(height, BAR_TICK, 2, 8));
-            }
-        }
+        choose_vertical_ticks(d);
         place_columns(d);
+        if (d->fig->equal_axes) {
+            equal_units(d);
+            choose_vertical_ticks(d);
+        }
         double width = d->column[0].right - d->column[0].left;
         axis_choose_ticks(&d->x, &d->fig->x, axis_tick_count(width, X_TICK, 2, 12));
 

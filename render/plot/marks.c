@@ -283,29 +283,36 @@ static figure_rect level_label(const drawing *d, const panel_layout *l, int inde
     return best;
 }
 
-// The place of a note's text: right of its point, or left of it if the panel ends before,
-// or below it if neither side has room.
+// The place of a note's text: beside, above or below its point, where it has the least
+// ink under it, the right side first; none of an optional note that would lie on a curve.
 static figure_rect note_place(const drawing *d, const panel_layout *l,
-                              const figure_note *n)
+                              const figure_note *n, const placement *grid)
 {
     const figure_rect *box = &l->plane.box;
-    double x = plane_x(&l->plane, n->x), y = plane_y(&l->plane, n->y);
-    double width = width_of(d, n->text, d->style.tick);
-    double height = height_of(d, figure_text_of(d, n->text, d->style.tick));
+    const double x = plane_x(&l->plane, n->x), y = plane_y(&l->plane, n->y);
+    const double width = width_of(d, n->text, d->style.tick);
+    const double height = height_of(d, figure_text_of(d, n->text, d->style.tick));
 
-    // at the right, or at the left
-    double left = x + NOTE_SPACE, top = y - height / 2;
-    if (left + width > box->x + box->width) {
-        left = x - NOTE_SPACE - width;
+    // the point lies at these shares of a text with its space; the panel keeps the text
+    static const anchor at[] = {{0, 0.5}, {1, 0.5}, {0.5, 1}, {0.5, 0},
+                                {0, 1},   {1, 1},   {0, 0},   {1, 0}};
+    figure_rect best = {0};
+    double least = INK_CURVE;
+    if (!n->optional) {
+        least = HUGE_VAL;
     }
-
-    // where neither side has room it goes below its point, inside the panel
-    if (left < box->x) {
-        left = fmax(box->x + 2, box->x + box->width - width - 2);
-        top = y + NOTE_SPACE;
+    for (size_t i = 0; i < G_N_ELEMENTS(at); i++) {
+        figure_rect r = {x - at[i].x * (width + 2 * NOTE_SPACE) + NOTE_SPACE,
+                         y - at[i].y * (height + 2 * NOTE_SPACE) + NOTE_SPACE, width,
+                         height};
+        r.x = fmax(box->x, fmin(box->x + box->width - width, r.x));
+        r.y = fmax(box->y, fmin(box->y + box->height - height, r.y));
+        if (placement_ink(grid, r) < least) {
+            least = placement_ink(grid, r);
+            best = r;
+        }
     }
-    return (figure_rect){left, fmax(box->y, fmin(box->y + box->height - height, top)),
-                         width, height};
+    return best;
 }
 
 // Adds the ink of levels, notes and marks to the grid of a panel, so that nothing else is
@@ -330,14 +337,21 @@ void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
         }
     }
 
-    // notes and marks
-    for (int i = 0; i < l->panel->note_count; i++) {
-        placement_block(grid, note_place(d, l, &l->panel->notes[i]), INK_CURVE);
-    }
+    // marks, and notes clear of them
     for (int i = 0; i < d->fig->mark_count; i++) {
         double x = plane_x(&l->plane, d->fig->marks[i].x);
         if (x >= box->x && x <= box->x + box->width) {
             placement_line(grid, x, box->y, x, box->y + box->height, INK_FAINT);
+        }
+    }
+    for (int i = 0; i < l->panel->note_count && i < NOTES_PLACED; i++) {
+        const figure_note *n = &l->panel->notes[i];
+        l->note_place[i] = (figure_rect){0};
+        if (scale_holds(&l->plane.x, n->x) && scale_holds(&l->plane.y, n->y)) {
+            const double x = plane_x(&l->plane, n->x), y = plane_y(&l->plane, n->y);
+            placement_line(grid, x, y, x, y, INK_CURVE);
+            l->note_place[i] = note_place(d, l, n, grid);
+            placement_block(grid, l->note_place[i], INK_CURVE);
         }
     }
 }
@@ -561,14 +575,12 @@ void draw_panel_levels(drawing *d, const panel_layout *l)
 // Draws the notes of a panel: dots with their texts.
 void draw_notes(drawing *d, const panel_layout *l)
 {
-    for (int i = 0; i < l->panel->note_count; i++) {
+    for (int i = 0; i < l->panel->note_count && i < NOTES_PLACED; i++) {
         const figure_note *n = &l->panel->notes[i];
-        if (!scale_holds(&l->plane.x, n->x) || !scale_holds(&l->plane.y, n->y)) {
-            continue;
+        const figure_rect *place = &l->note_place[i];
+        if (place->width > 0) {
+            draw_dot(d, &l->plane, n->x, n->y);
+            draw_markup(d, n->text, d->style.tick, place->x, place->y, (anchor){0, 0});
         }
-
-        figure_rect place = note_place(d, l, n);
-        draw_dot(d, &l->plane, n->x, n->y);
-        draw_markup(d, n->text, d->style.tick, place.x, place.y, (anchor){0, 0});
     }
 }

@@ -116,7 +116,7 @@ static series_pen pen_of(const drawing *d, const panel_layout *l, int index)
     // a line over a map keeps the pattern it asks for
     series_pen pen = {palette_series(d->style.theme, s->colour, index), s->style,
                       series_width(s)};
-    if (!s->rim) {
+    if (!s->rim && !s->own_style) {
         pen.style = untaken_style(l->panel->series, index);
     }
     return pen;

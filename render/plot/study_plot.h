@@ -73,16 +73,20 @@ figure_map *figure_grid(owned_figure *o, const double *x, const double *y,
 // owned_figure_destroy.
 owned_figure *identify_figure_create(const identification *id);
 
-// --- linear: answers over frequency, and a loop gain in the complex plane
+// --- linear: answers over frequency, and a loop gain in the complex plane: loop_plot.c
 
 typedef struct linear_curve {
     const char *name;
     linear_response response;
 } linear_curve;
 
-// Describe gain and phase of at most FIGURE_PANELS curves, and the loop gain with the
-// points of size 1 and -1; the title ends with what was changed. To be freed with
+// Describe gain and phase of at most FIGURE_PANELS curves, and the loop gain with equal
+// axes, frequencies along it and the points of size 1 and -1; the title ends with what
+// was changed. Finite margins are drawn, those of a Bode plot with their crossovers, half
+// the rate, and the levels of 0 dB and half a revolution; margins of a Bode plot are
+// those of its only curve, a loop gain, and NULL for answers of an arm. To be freed with
 // owned_figure_destroy.
-owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves,
-                                 int count);
-owned_figure *nyquist_figure_create(const scenario *s, const linear_response *loop);
+owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, int count,
+                                 const linear_margins *margins);
+owned_figure *nyquist_figure_create(const scenario *s, const linear_response *loop,
+                                    const linear_margins *margins);

@@ -109,6 +109,8 @@ typedef struct linear_margins {
     double phase_deg; // either way [degrees]
     double delay_s;   // further delay that it takes [s]
     double disk;      // 2 min |1 + L|/|1 - L|: gain and phase together
+    // where L crosses the negative real axis at gain_db, and |L| = 1 at phase_deg
+    double gain_at, phase_at; // [rad/s]
 } linear_margins;
 linear_margins linear_margins_of(const linear_response *r);
 

@@ -304,13 +304,16 @@ status linear_respond(const linear_system *s, int output, double period,
 
 #define MOST_GAIN_DB 120.0 // no law is off by a factor of a million; beyond is rounding
 
-// Lowers the gain margins for a crossing of the negative real axis at L = -size: the gain
-// may grow by 1/size, or fall by that much where size exceeds 1.
-static void cross_negative_axis(linear_margins *m, double size)
+// Lowers the gain margins for a crossing of the negative real axis at L = -size and the
+// frequency w: the gain may grow by 1/size, or fall by that much where size exceeds 1.
+static void cross_negative_axis(linear_margins *m, double size, double w)
 {
     const double db = 20 * plain_log(1 / size) / plain_log(10);
     if (fabs(db) > MOST_GAIN_DB) {
         return;
+    }
+    if (db >= 0 && db < m->gain_db) {
+        m->gain_at = w;
     }
     double *margin = db >= 0 ? &m->gain_db : &m->gain_down_db;
     *margin = fmin(*margin, fabs(db));
@@ -331,7 +334,10 @@ static void cross_unit_circle(linear_margins *m, const linear_response *r, int i
 
     // the angle from -1 to the crossing: a delay turns L back by it and reaches -1
     const double angle = plain_atan2(-cimag(crossing), -creal(crossing));
-    m->phase_deg = fmin(m->phase_deg, fabs(angle) * 180 / M_PI);
+    if (fabs(angle) * 180 / M_PI < m->phase_deg) {
+        m->phase_deg = fabs(angle) * 180 / M_PI;
+        m->phase_at = w;
+    }
     const double turned_back = angle >= 0 ? angle : angle + 2 * M_PI;
     m->delay_s = fmin(m->delay_s, turned_back / w);
 }
@@ -347,7 +353,7 @@ linear_margins linear_margins_of(const linear_response *r)
         // at both ends a sampled loop gain is real, up to rounding
         const bool real = fabs(cimag(gain)) < 1e-9 * cabs(gain);
         if ((is_last || i == 0) && real && creal(gain) < 0) {
-            cross_negative_axis(&m, -creal(gain));
+            cross_negative_axis(&m, -creal(gain), r->frequency[i]);
         }
         if (is_last) {
             break;
@@ -359,8 +365,9 @@ linear_margins linear_margins_of(const linear_response *r)
         if (cimag(gain) * cimag(next) <= 0 && cimag(gain) != cimag(next)) {
             const double share = cimag(gain) / (cimag(gain) - cimag(next));
             const double crossing = creal(gain) + share * (creal(next) - creal(gain));
+            const double step = r->frequency[i + 1] - r->frequency[i];
             if (crossing < 0) {
-                cross_negative_axis(&m, -crossing);
+                cross_negative_axis(&m, -crossing, r->frequency[i] + share * step);
             }
         }
     }

@@ -457,7 +457,7 @@ static int plot_arm(const arguments *a, const analysis *x)
     // the picture
     int result;
     if (code == STATUS_OK) {
-        result = publish_owned(a, bode_figure_create(x->scenario, curves, 2));
+        result = publish_owned(a, bode_figure_create(x->scenario, curves, 2, NULL));
     } else {
         result = complain_fault(&f);
     }
@@ -467,20 +467,32 @@ static int plot_arm(const arguments *a, const analysis *x)
     return result;
 }
 
+// The margins, of which an unstable loop has none.
+static linear_margins drawn_margins(const analysis *x)
+{
+    if (x->stable) {
+        return x->margins;
+    }
+    return (linear_margins){HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+}
+
 static int plot_analysis(const arguments *a, const analysis *x)
 {
     if (x->response.count == 0) {
         return plot_arm(a, x);
     }
     const linear_curve gain = {"loop gain", x->response};
-    return publish_owned(a, bode_figure_create(x->scenario, &gain, 1));
+    const linear_margins margins = drawn_margins(x);
+    return publish_owned(a, bode_figure_create(x->scenario, &gain, 1, &margins));
 }
 
 static int plot_nyquist(const arguments *a, const analysis *x)
 {
     arguments of_nyquist = *a;
     of_nyquist.plot = a->nyquist;
-    return publish_owned(&of_nyquist, nyquist_figure_create(x->scenario, &x->response));
+    const linear_margins margins = drawn_margins(x);
+    return publish_owned(&of_nyquist,
+                         nyquist_figure_create(x->scenario, &x->response, &margins));
 }
 
 // --- the command -----------------------------------------------------------------------
