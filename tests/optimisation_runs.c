@@ -19,7 +19,7 @@ static const char *const runs[] = {
     "method.name=generalized-alpha arm.links=5",
     "arm.links=64 wall.kind=plane run.duration=0.5",
     "control.law=hybrid wall.angle=0 initial.angle=-0.1",
-    "control.law=optimal control.force=2 wall.angle=0 initial.angle=-0.1",
+    "control.law=touch control.force=2 wall.angle=0 initial.angle=-0.1",
     "arm.model=printed",
     "arm.model=printed motor.voltage=5 method.step=0.01",
 };

@@ -283,7 +283,7 @@ static void give_command(soak *s)
     static const char *const commands[] = {
         "set motor.voltage %d.5", "set run.duration %d", "set arm.links %d",
         "open corrected/twenty-links", "open compare/hybrid", "open thesis/fig-3-4",
-        "open corrected/first-impact", "open compare/optimal", "seek 0.%d", "seek end",
+        "open corrected/first-impact", "open compare/touch", "seek 0.%d", "seek end",
         "speed %d", "push 0.0%d", "push -0.%d", "set method.step 0.000%d",
         "set arm.k2 %d", "set wall.angle 0.0%d", "zoom in", "zoom out", "trace force gap",
         "panes 1%d", "glyphs ascii", "glyphs braille", "glyphs blocks", "theme mono",

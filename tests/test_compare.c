@@ -139,8 +139,8 @@ TEST(varied_values_have_columns)
 // Full knowledge of the state bounds every law, and only where its model holds.
 TEST(nothing_beats_the_best)
 {
-    for (EACH_TEXT(c, "control.law=hybrid", "control.law=optimal",
-                   "control.law=predictive", "control.law=force-pd")) {
+    for (EACH_TEXT(c, "control.law=hybrid", "control.law=recovering",
+                   "control.law=reverse-torque", "control.law=force-pd")) {
         for (int k = 1; k <= 8; k++) {
             scenario s = {.name = (char *)"it",
                           .parameters =

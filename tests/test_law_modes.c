@@ -14,8 +14,8 @@ TEST(test_the_panel_is_whole_on_every_screen)
     static const int sizes[][2] = {{80, 24}, {100, 30}, {120, 40}, {200, 60}};
     OPEN_EXPLORER(ex, "compare/hybrid");
     for (EACH_TEXT(c, "hybrid", "recovering", "force-pd", "force-integral",
-                   "discontinuous", "optimal", "predictive", "speed-limit", "open-loop",
-                   "bang-bang", "reverse-torque")) {
+                   "discontinuous", "touch", "speed-limit", "open-loop", "bang-bang",
+                   "reverse-torque")) {
         char mode[MODE_NAME_SIZE];
         assert_true(explorer_carry_out(&ex, formatted("law %s", *c)));
         session_seek(&ex.model.session, 0.9);

@@ -7,7 +7,7 @@
 // it.
 TEST(laws_know_any_delay)
 {
-    for (EACH_TEXT(c, "control.law=optimal", "control.law=observer")) {
+    for (EACH_TEXT(c, "control.law=touch", "control.law=observer")) {
         for (EACH_TEXT(each, "control.delay_periods=0", "control.delay_periods=0.5",
                        "control.delay_periods=1")) {
             const summary s =
@@ -20,18 +20,9 @@ TEST(laws_know_any_delay)
 
 TEST(a_motor_without_torque_is_said)
 {
-    for (EACH_TEXT(c, "control.law=optimal", "control.law=observer")) {
+    for (EACH_TEXT(c, "control.law=touch", "control.law=observer")) {
         check_refused(given("%s motor.amplifier_gain=0", *c), "it needs a motor");
     }
-}
-
-// Links that throw the force of an impact nowhere: the law brakes by the spring alone.
-TEST(links_without_a_force_of_their_own_are_pressed)
-{
-    const summary s = rig_summary_with(
-        "control.law=optimal arm.mass=0.4 arm.link_inertia=0.0125 control.force=1");
-    assert_true(s.impacts >= 1);
-    assert_true(isfinite(s.peak_force_N));
 }
 
 // A mass without inertia moves at its commanded speed.

@@ -141,68 +141,26 @@ TEST(the_rate_limits_the_velocity_gain)
     }
 }
 
-// --- the optimal law -------------------------------------------------------------------
-
-// Against the hybrid law with corrected coefficients on the noisy default rig.
-TEST(optimal_law_beats_the_hybrid)
-{
-    const struct {
-        const char *force;
-        double share; // of the hybrid law's overshoot that is allowed
-    } cases[] = {{"control.force=0.5", 0.5},
-                 {"control.force=1", 1.0 / 3},
-                 {"control.force=2", 1.0 / 3},
-                 {"control.force=3", 1.0 / 3}};
-    for (int i = 0; i < 4; i++) {
-        for (int seed = 1; seed <= 10; seed++) {
-            summary hybrid = rig_summary_with("control.law=hybrid %s control.seed=%d",
-                                              cases[i].force, seed);
-            summary optimal = rig_summary_with("control.law=optimal %s control.seed=%d",
-                                               cases[i].force, seed);
-            check_close(optimal.separations, 0, 0);
-            check_below(optimal.force_over_command_N,
-                        fmax(cases[i].share * hybrid.force_over_command_N, 1e-9));
-            check_below(optimal.settling_time_s, 0.4 * hybrid.settling_time_s);
-            check_close(optimal.steady_error_N, 0, 0.03 * optimal.force_command_N);
-        }
-    }
-}
-
-TEST(optimal_law_stands_wrong_beliefs)
-{
-    for (EACH_TEXT(c, "belief.k2_factor=0.8", "belief.k2_factor=1.2",
-                   "belief.wall_error=0.02", "belief.wall_error=-0.02")) {
-        for (EACH_TEXT(each, "control.force=0.5", "control.force=1", "control.force=2",
-                       "control.force=3")) {
-            summary hybrid = rig_summary_with("control.law=hybrid %s %s", *each, *c);
-            summary optimal = rig_summary_with("control.law=optimal %s %s", *each, *c);
-            check_close(optimal.separations, 0, 0);
-            // (a law that stays below the command has no overshoot to be beaten)
-            check_below(optimal.force_over_command_N,
-                        fmax(hybrid.force_over_command_N, 0.01 * hybrid.force_command_N));
-            check_below(fabs(optimal.steady_error_N), fabs(hybrid.steady_error_N));
-        }
-    }
-}
+// --- the law touch ---------------------------------------------------------------------
 
 // The approach goes as fast as the limit on the force allows, wherever the wall is.
-TEST(predictive_law_keeps_its_limit)
+TEST(touch_keeps_its_limit)
 {
     for (EACH_OF(double, c, 0.7, 1, 1.5, 2)) {
         for (int k = 0; k < 8; k++) {
-            const char *limit = formatted("control.force_limit=%g", *c);
-            summary fast = rig_summary_with(
-                "control.law=predictive %s control.seed=%d initial.angle=%g "
-                "control.force=0.5 control.approach_voltage=5",
-                limit, k, -0.2 - 0.013 * k);
-            summary blind =
-                rig_summary_with("control.law=optimal control.seed=%d initial.angle=%g "
-                                 "control.force=0.5 control.approach_voltage=5",
-                                 k, -0.2 - 0.013 * k);
-            check_below(fast.peak_force_N, *c);
+            const char *where = formatted("control.seed=%d initial.angle=%g "
+                                          "control.force=0.5 ",
+                                          k, -0.2 - 0.013 * k);
+            summary limited = rig_summary_with("control.law=touch control.force_limit=%g "
+                                               "%s",
+                                               *c, where);
+            summary blind = rig_summary_with("control.law=hybrid %s "
+                                             "control.approach_voltage=5",
+                                             where);
+            check_below(limited.peak_force_N, *c);
             check_below(2, blind.peak_force_N);
             // and no slower than that needs: the limit is nearly used
-            check_below(0.75 * *c, fast.peak_force_N);
+            check_below(0.75 * *c, limited.peak_force_N);
         }
     }
 }
@@ -255,7 +213,7 @@ TEST(every_law_ends_near_its_force)
     for (EACH_TEXT(c, "control.law=hybrid", "control.law=force-pd",
                    "control.law=reverse-torque", "control.law=speed-limit",
                    "control.law=discontinuous", "control.law=recovering",
-                   "control.law=optimal", "control.law=bang-bang")) {
+                   "control.law=touch", "control.law=bang-bang")) {
         summary s = rig_summary_with("%s", *c);
         check_close(s.steady_force_N, 1, 0.05);
     }

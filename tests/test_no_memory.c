@@ -254,7 +254,7 @@ TEST(runs_of_every_engine)
 
 TEST(runs_of_the_rig)
 {
-    static const char *const settings[] = {"control.law=hybrid", "control.law=optimal",
+    static const char *const settings[] = {"control.law=hybrid", "control.law=touch",
                                            "control.law=observer",
                                            "control.law=inverse-dynamics"};
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {

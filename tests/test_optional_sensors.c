@@ -67,8 +67,8 @@ TEST(choice_of_the_piezo_fits_it)
 
 TEST(fitting_them_changes_no_other_signal)
 {
-    RIG_RUN(without, "control.law=optimal");
-    RIG_RUN(with, "control.law=optimal " ALL_FITTED);
+    RIG_RUN(without, "control.law=touch");
+    RIG_RUN(with, "control.law=touch " ALL_FITTED);
     assert_int_equal(without.trace.row_count, with.trace.row_count);
     size_t readings = 0; // three sensors, one each in every row
     for (size_t row = 0; row < with.trace.row_count; row++) {

@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 
 # each of the laws and arms that take exponentials, logarithms, powers, sines
 for scenario in corrected/first-impact corrected/three-links compare/hybrid \
-    compare/inverse-dynamics-free compare/optimal compare/observer \
+    compare/inverse-dynamics-free compare/touch compare/observer \
     compare/force-integral-soft-wall; do
     "$impactlab" run "$scenario" --quiet --csv "$work/here.csv" || [ $? = 1 ]
     GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F \

@@ -192,9 +192,9 @@ TEST(errors_are_from_the_last_command)
 
 TEST(same_seed_same_bytes)
 {
-    RIG_RUN(a, "control.law=optimal control.jitter=0.0005");
-    RIG_RUN(b, "control.law=optimal control.jitter=0.0005");
-    RIG_RUN(c, "control.law=optimal control.jitter=0.0005 control.seed=2");
+    RIG_RUN(a, "control.law=observer control.jitter=0.0005");
+    RIG_RUN(b, "control.law=observer control.jitter=0.0005");
+    RIG_RUN(c, "control.law=observer control.jitter=0.0005 control.seed=2");
     assert_int_equal(a.trace.row_count, b.trace.row_count);
     assert_memory_equal(a.trace.rows, b.trace.rows, a.trace.row_count * sizeof(sample));
     assert_true(a.summary.peak_force_N != c.summary.peak_force_N);

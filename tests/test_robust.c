@@ -385,7 +385,7 @@ TEST(tables_have_a_line_a_law)
                           .overshoot_of = "peak",
                           .overshoot = {3, 8, never},
                           .against = never},
-                         {.law = "optimal",
+                         {.law = "touch",
                           .runs = 10,
                           .failed = 2,
                           .settled = 0.8,

@@ -331,12 +331,20 @@ TEST(test_every_law_follows_its_set_point)
 {
     for (EACH_TEXT(law, "hybrid", "recovering", "speed-limit", "reverse-torque",
                    "bang-bang", "force-pd", "impedance", "admittance", "discontinuous",
-                   "optimal", "predictive", "observer")) {
+                   "observer")) {
         check_force_on_moving_wall(*law);
         check_force_after_step(*law);
         check_force_along_ramp(*law);
         check_force_along_wave(*law);
     }
+}
+
+// Its plan takes a quarter of a second to a step, longer than the others.
+TEST(test_touch_follows_walls_ramps_and_waves)
+{
+    check_force_on_moving_wall("touch");
+    check_force_along_ramp("touch");
+    check_force_along_wave("touch");
 }
 
 // `from` after it has moved towards `to` by `most` at most.

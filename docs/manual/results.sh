@@ -29,16 +29,16 @@ table() {
     echo '# Results'
     table 'All laws on one impact' 'impactlab compare --quiet --markdown - \
 compare/{open-loop,hybrid,hybrid-printed,force-pd,force-integral,reverse-torque,speed-limit,bang-bang} \
-compare/{discontinuous,recovering,optimal,predictive,inverse-dynamics,observer,least-time}'
+compare/{discontinuous,recovering,inverse-dynamics,observer,least-time,touch,touch-limit}'
     table 'Wrong beliefs' 'impactlab robust compare/observer --quiet --markdown - \
---laws hybrid,force-pd,impedance,admittance,recovering,optimal,observer'
+--laws hybrid,force-pd,impedance,admittance,recovering,touch,observer'
     for set in cases second-cases third-cases; do
         table "One thing at a time: $set.set" "impactlab robust compare/observer --quiet --markdown - \\
 --over scenarios/sets/$set.set --against hybrid"
     done
     table 'The least time in doubt' 'impactlab robust compare/least-time --quiet --markdown - \
 --over scenarios/sets/cases.set'
-    table 'Optimal and hybrid by force' 'impactlab compare compare/hybrid compare/optimal --quiet --markdown - \
+    table 'Touch and hybrid by force' 'impactlab compare compare/hybrid compare/touch --quiet --markdown - \
 --vary control.force=0.5,1,2,3,4 --columns peak_force_N,overshoot_percent,settling_time_s,steady_error_N'
     table 'The transition time' 'impactlab compare compare/hybrid --quiet --markdown - \
 --vary control.transition_time=0.05,0.1,0.15,0.2,0.25,0.35,0.5,0.7'
@@ -49,7 +49,7 @@ compare/{discontinuous,recovering,optimal,predictive,inverse-dynamics,observer,l
 --vary control.impact_angle=told,film,accelerometer --vary belief.wall_error=-0.02,0,0.02 \
 --columns peak_force_N,settling_time_s,steady_error_N'
     table 'Force sensors' 'impactlab compare --quiet --markdown - --vary control.rate=200,500,1000,2000 \
-compare/force-pd compare/force-pd-piezo compare/optimal compare/optimal-piezo'
+compare/force-pd compare/force-pd-piezo compare/observer'
     table 'The look-up table' 'impactlab calibrate compare/twelve-links'
     table 'Tables 4.1 to 4.3' 'impactlab tables'
     table 'Methods of integration' 'impactlab study methods corrected/first-impact'

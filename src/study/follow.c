@@ -9,7 +9,7 @@
 
 const double follow_frequencies[FOLLOW_FREQUENCIES] = {0.2, 0.5, 1, 2, 4, 8, 15, 25};
 const char *const follow_laws[FOLLOW_LAWS] = {"hybrid",     "force-pd", "impedance",
-                                              "admittance", "optimal",  "observer"};
+                                              "admittance", "touch",    "observer"};
 
 #define SETTLED 3.0 // instant at which impact and transients are over [s]
 #define WATCHED 2.0 // least time from then on that is evaluated, in whole periods [s]

@@ -41,12 +41,6 @@
     LAW(RECOVERING, recovering, "recovering", TOLD_PATH, 0, "",                          \
         "hybrid that goes back to position control where contact is lost",               \
         "$k_2$, wall's angle", "hub, force", "settles in 83 % of wrong beliefs")         \
-    LAW(OPTIMAL, optimal, "optimal", TOLD_PATH | HAS(TOLD_DELAY), 0, "",                 \
-        "state feedback with an observer on the linearised arm", "model of two links",   \
-        "hub, force", "more links: bounces")                                             \
-    LAW(PREDICTIVE, predictive, "predictive", TOLD_PATH | HAS(TOLD_DELAY), 0, "",        \
-        "optimal behind an approach that keeps to a limit on the force",                 \
-        "model of two links, `force_limit`", "hub, force", "more links: bounces")        \
     LAW(INVERSE_DYNAMICS, inverse_dynamics, "inverse-dynamics",                          \
         TOLD_PATH | HAS(TOLD_DELAY), 0, "",                                              \
         "computed torque through the inverse of the flexible arm, played back "          \

@@ -401,7 +401,7 @@ static void step_to(impactlab_loop *loop, double time)
 TEST(states_come_back)
 {
     static const char *const names[] = {"corrected/first-impact", "compare/hybrid",
-                                        "compare/optimal", "corrected/twenty-links",
+                                        "compare/touch", "corrected/twenty-links",
                                         "compare/hybrid-printed-arm"};
     for (EACH(c, names)) {
         own_scenario *scenario = opened(*c);

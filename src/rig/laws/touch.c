@@ -7,6 +7,11 @@
 // Systems, Measurement and Control 112, 1990). The last stretch before the believed wall
 // goes at the touch speed v = v0 + v1 f: what the force f takes up in a time, m v/f, is
 // then much the same for every f. Behind the believed wall it goes faster and faster.
+// With a force limit the whole way goes at the speed whose touch keeps to the limit,
+// wherever the wall is. A touch without vibration at the rate w turns the hub against the
+// pressed beam at x' = w (A - J2)/M, and the pulse of a hub that coasts has the peak
+//
+//     f = (2 k2/l) x'/s,    s^2 = 4 k2/M.
 //
 // Touch. The sensor feels the wall, or the hub's rate jumps by more than torque and beam
 // explain: between two samples at 200 Hz a tip can strike and leave unread. The tip's
@@ -39,6 +44,7 @@ static const char *const mode_names[] = {"travel", "press", "back", NULL};
 enum {
     FORCE_WANTED,
     THRESHOLD,
+    FORCE_LIMIT,
     TOUCH_SPEED,
     TOUCH_SPEED_PER_NEWTON,
     SLOW_BEFORE,
@@ -65,6 +71,7 @@ enum {
 static const controller_parameter table[PARAMETERS] = {
     [FORCE_WANTED] = {.name = "force"},
     [THRESHOLD] = {.name = "contact_threshold"},
+    [FORCE_LIMIT] = {.name = "force_limit"},
     [TOUCH_SPEED] = {"touch_speed", "m/s", 0.109, 0, 1, "speed of the tip at the wall"},
     [TOUCH_SPEED_PER_NEWTON] = {"touch_speed_per_newton", "m/s/N", 0.0269, 0, 1,
                                 "and what each newton of the command adds to it"},
@@ -106,6 +113,9 @@ enum { DELAYED = 7 }; // periods of delay that the reference is kept for, at mos
 #define FASTEST           1.0  // travel of the hub [rad/s]
 #define FRICTION_RATE     0.03 // within which compensated friction turns round [rad/s]
 #define STICTION_RATE     0.02 // the same of the hub's own [rad/s]
+#define LIMIT_SHARE       0.88 // of the force limit that the pulse may reach
+#define TURN_FRICTION     0.95 // share that is compensated where the set-point moves
+#define TURN_RATE         0.005 // within which friction turns round with the set-point [rad/s]
 #define FASTEST_SEARCH    0.3  // [rad/s]
 #define LARGEST_LAG_ERROR 0.05 // of the angle that the spring answers to [rad]
 #define INERTIA_SHARE     0.1  // of the beam's part that the damper may count on
@@ -129,6 +139,7 @@ typedef struct touch_design {
     double cosine, sine;  // of its turn in a period
     double compliance;    // of the hub in it, 1/Jh - 1/J [1/(kg m2)]
     double touch_rate;    // of the hub at the wall [rad/s]
+    double largest_rate;  // of the hub on the way and in search [rad/s]
     double landing_rate;  // of one that comes back [rad/s]
     double travel_damping, press_damping; // within the limit [N m s/rad]
     double slowness;                      // of the plan, 1 where the loop lags little
@@ -161,6 +172,7 @@ typedef struct touch_memory {
     double hub_path[DELAYED + 1], hub_path_rate[DELAYED + 1]; // of the last samples
 
     // pressing
+    set_point wanted;        // of which the force is the aim
     double plan;             // p [N]
     double first_plan;       // p0 [N]
     double rest_rate;        // theta_r' [rad/s]
@@ -207,6 +219,29 @@ static void design_arm(touch_design *d, const controller_setup *rig)
     inline_sincos(d->frequency * rig->period, &d->sine, &d->cosine);
 }
 
+// The hub's rate at which the pulse of a touch has a force as its peak [rad/s].
+static double rate_within(const touch_design *d, const controller_setup *rig,
+                          double force)
+{
+    const double jump = (d->hub_inertia - d->link_inertia) / d->pressed;
+    const double swing = sqrt(4 * rig->k2 / d->pressed);
+    return force * swing * rig->link_length / (2 * rig->k2 * jump);
+}
+
+// The speeds of travel, search and landing, for the force and its limit.
+static void design_speeds(touch_design *d, const controller_setup *rig, const double *p)
+{
+    const double force = fabs(p[FORCE_WANTED]);
+    d->touch_rate = (p[TOUCH_SPEED] + p[TOUCH_SPEED_PER_NEWTON] * force) / d->length;
+    d->largest_rate = FASTEST;
+    d->landing_rate = p[LANDING_SPEED] * force / d->length;
+    if (p[FORCE_LIMIT] > 0) {
+        d->largest_rate = rate_within(d, rig, LIMIT_SHARE * p[FORCE_LIMIT]);
+        d->touch_rate = d->largest_rate;
+        d->landing_rate = fmin(d->landing_rate, d->largest_rate);
+    }
+}
+
 static const char *tune(void *memory, const controller_setup *setup)
 {
     touch_memory *m = memory;
@@ -214,14 +249,13 @@ static const char *tune(void *memory, const controller_setup *setup)
     if (!(setup->torque_per_volt > 0)) {
         return "it needs a motor with torque";
     }
+    const bool at_start = m->rig.period == 0;
+    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, at_start);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     design_arm(d, setup);
 
-    const double force = fabs(m->p[FORCE_WANTED]);
-    d->touch_rate =
-        (m->p[TOUCH_SPEED] + m->p[TOUCH_SPEED_PER_NEWTON] * force) / d->length;
-    d->landing_rate = m->p[LANDING_SPEED] * force / d->length;
+    design_speeds(d, setup, m->p);
 
     // what the loop's lag leaves of the dampers
     const double lag = setup->delay + setup->period / 2 + LAG_OF_SENSORS;
@@ -251,8 +285,8 @@ static void begin_travel(touch_memory *m, double encoder)
     }
     const double way = fmax(0, m->rig.wall_angle - m->p[SLOW_BEFORE] - encoder -
                                    d->touch_rate * period / 2);
-    m->cruise_end = way / FASTEST;
-    m->cruise_rate = way > 0 ? FASTEST : d->touch_rate;
+    m->cruise_end = way / d->largest_rate;
+    m->cruise_rate = way > 0 ? d->largest_rate : d->touch_rate;
 }
 
 // The hub between its two sensors: the tachometer's integral, drawn to the encoder.
@@ -343,7 +377,8 @@ static double travel_torque(touch_memory *m)
                        bounded((m->time - m->cruise_end) / ramp, 0, 1);
     if (m->path > rig->wall_angle + m->p[SLOW_BEHIND]) {
         const double faster = m->p[SEARCH] / d->length * period;
-        m->search_rate = fmin(m->search_rate + faster, FASTEST_SEARCH);
+        const double most = fmin(FASTEST_SEARCH, d->largest_rate - d->touch_rate);
+        m->search_rate = fmin(m->search_rate + faster, most);
     }
     m->path_rate += m->search_rate;
     m->path += (before + m->path_rate) / 2 * period;
@@ -392,11 +427,12 @@ static void follow_plan(touch_memory *m, bool lost)
     if (lost) {
         const double since = m->unfelt / RETURN_TIME;
         change = -m->p[DECAY] * m->plan;
-        creep = d->landing_rate * (1 + since * since);
+        creep = fmin(d->landing_rate * (1 + since * since), d->largest_rate);
         m->integral -= m->p[DECAY] / 2 * m->integral * period;
     } else {
         const double most = m->p[GROWTH] * (m->plan + m->first_plan);
-        change = bounded((m->p[FORCE_WANTED] - m->plan) / m->p[RISE_TIME], -most, most);
+        const double left = m->wanted.aim - m->plan;
+        change = m->wanted.aim_rate + bounded(left / m->p[RISE_TIME], -most, most);
     }
     m->plan += change * period;
     m->rest_rate = change * d->length / d->hub_stiffness + creep;
@@ -433,7 +469,9 @@ static double press_torque(touch_memory *m, double reading)
     const double most = LARGEST_INERTIAL * fabs(m->p[FORCE_WANTED]) * d->length;
     const double inertial =
         m->p[RISE_INERTIA] * d->pressed * (m->rest_rate - before) / rig->period;
+    const double turn = m->wanted.aim_rate * d->length / d->hub_stiffness;
     return m->plan * d->length + rig->hub_damping * m->rest_rate +
+           TURN_FRICTION * rig->stiction * bounded(turn / TURN_RATE, -1, 1) +
            bounded(inertial, -most, most) + damping * (m->rest_rate - m->rate) +
            m->integral;
 }
@@ -444,6 +482,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
 {
     touch_memory *m = memory;
     const double period = m->rig.period;
+    set_point_follow(&m->wanted, period);
     const bool felt = in->force > m->p[FELT] * m->p[THRESHOLD];
     if (!m->started) {
         begin_travel(m, in->encoder);
