@@ -419,6 +419,80 @@ TEST(a_saddle_is_cut_by_its_middle)
     }
 }
 
+enum { MAP_COLUMNS = 6, MAP_ROWS = 4, MAP_PARTS = 8 };
+
+// A map over columns and rows at uneven places of the unit square.
+static const double map_x[MAP_COLUMNS] = {0, 0.1, 0.3, 0.6, 0.8, 1};
+static const double map_y[MAP_ROWS] = {0, 0.2, 0.7, 1};
+static const plane map_plane = {{0, 0, 100, 60},
+                                {SCALE_LINEAR, 0, 1},
+                                {SCALE_LINEAR, 0, 1}};
+
+static fine_grid refined(const double *z)
+{
+    const figure_map map = {map_x, map_y, MAP_COLUMNS, MAP_ROWS, z};
+    return map_refine(&map, &map_plane, SCALE_LINEAR, MAP_PARTS);
+}
+
+// Whatever the values, steps among them: those of the points stay, and no other leaves
+// what the corners of its cell span, so that no contour line enters a cell uncalled for.
+TEST(a_refined_map_stays_within_its_cells)
+{
+    random_generator g = seeded(5);
+    for (int trial = 0; trial < 300; trial++) {
+        double z[MAP_COLUMNS * MAP_ROWS];
+        for (int i = 0; i < MAP_COLUMNS * MAP_ROWS; i++) {
+            z[i] = random_uniform(&g) - 0.5;
+            z[i] = trial % 2 == 0 ? z[i] : copysign(1 + 1e-3 * z[i], z[i]);
+        }
+        SCOPED(fine_grid_finish) fine_grid fine = refined(z);
+        assert_int_equal(fine.columns, (MAP_COLUMNS - 1) * MAP_PARTS + 1);
+        assert_int_equal(fine.rows, (MAP_ROWS - 1) * MAP_PARTS + 1);
+        for (size_t i = 0; i < fine.columns; i++) {
+            for (size_t j = 0; j < fine.rows; j++) {
+                const size_t column = MIN(i / MAP_PARTS, MAP_COLUMNS - 2);
+                const size_t row = MIN(j / MAP_PARTS, MAP_ROWS - 2);
+                const double *corner = &z[column * MAP_ROWS + row];
+                const double low = fmin(fmin(corner[0], corner[1]),
+                                        fmin(corner[MAP_ROWS], corner[MAP_ROWS + 1]));
+                const double high = fmax(fmax(corner[0], corner[1]),
+                                         fmax(corner[MAP_ROWS], corner[MAP_ROWS + 1]));
+                const double here = fine.z[i * fine.rows + j];
+                assert_true(here >= low - 1e-14 && here <= high + 1e-14);
+                if (i % MAP_PARTS == 0 && j % MAP_PARTS == 0) {
+                    check_close(here, z[i / MAP_PARTS * MAP_ROWS + j / MAP_PARTS], 0);
+                }
+            }
+        }
+    }
+}
+
+// A plane stays one, at the places where it is looked at, and a missing value leaves out
+// the cells round it, no more.
+TEST(a_refined_map_follows_a_plane)
+{
+    double z[MAP_COLUMNS * MAP_ROWS];
+    for (int i = 0; i < MAP_COLUMNS; i++) {
+        for (int j = 0; j < MAP_ROWS; j++) {
+            z[i * MAP_ROWS + j] = 1 + 3 * map_x[i] - 2 * map_y[j];
+        }
+    }
+    z[MAP_ROWS] = (double)NAN; // second column, first row
+    SCOPED(fine_grid_finish) fine_grid fine = refined(z);
+    for (size_t i = 0; i < fine.columns; i++) {
+        for (size_t j = 0; j < fine.rows; j++) {
+            const double here = fine.z[i * fine.rows + j];
+            const bool near_hole = i > 0 && i < 2 * MAP_PARTS && j < MAP_PARTS;
+            if (!near_hole) {
+                const double x = fine.x[i] / 100, y = 1 - fine.y[j] / 60;
+                check_close(here, 1 + 3 * x - 2 * y, 1e-12);
+            } else if (i % MAP_PARTS != 0 && j % MAP_PARTS != 0) {
+                assert_true(isnan(here));
+            }
+        }
+    }
+}
+
 TEST(the_colour_scale_grows_lighter_all_the_way)
 {
     double before = -1;

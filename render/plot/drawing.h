@@ -253,3 +253,18 @@ typedef struct contour_piece {
 // z[3] at (1, 1). A saddle is decided by the mean of the four. Returns the number of
 // pieces, 0 to 2; 0 if a corner is not finite.
 int contour_square(const double z[4], double level, contour_piece pieces[2]);
+
+// Values between the points of a map, on a finer grid: z[column * rows + row] at places
+// on the page [pt], as coordinates of the values' scale.
+typedef struct fine_grid {
+    size_t columns, rows;
+    double *x, *y, *z;
+} fine_grid;
+
+// Divides every cell of a map of two columns and rows or more into parts by parts, with
+// monotone cubics along columns and rows: within a cell no value lies outside those of
+// its four corners, so that no contour line enters a cell that its corners do not ask
+// for. Beside a missing value there are none. To be freed with fine_grid_finish.
+fine_grid map_refine(const figure_map *map, const plane *p, scale_kind kind,
+                     size_t parts);
+void fine_grid_finish(fine_grid *g);

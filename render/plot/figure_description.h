@@ -80,7 +80,8 @@ typedef struct figure_map {
     const double *x, *y; // ascending: of the columns and of the rows, in the axes' values
     size_t columns, rows;
     const double *z; // a cell whose value is not finite is hatched
-    bool contours;   // lines at the ticks of the colour scale
+    bool contours;   // lines at the ticks of the colour scale, smooth within each cell
+    bool zero;       // a strong one where the values change their sign
 } figure_map;
 
 // A colour scale from low (dark) to high (bright).

@@ -57,6 +57,10 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
 #define HATCH        4.0  // distance of hatching lines
 #define OVERLAP      0.4  // of a cell under its later neighbours
 #define BRIGHT       0.55 // share of the colour scale above which lines over it are dark
+#define ZERO_WIDTH   3.0  // of the line of zero, with its rim
+#define ZERO_CORE    1.6  // of that line without its rim
+
+enum { FINEST_PARTS = 8, FINE_COLUMNS = 400 };
 
 // ---- scales
 
@@ -211,33 +215,183 @@ static void set_contour_line(const drawing *d, const panel_layout *l, double lev
 {
     bool dark = shade_share(l, level) < BRIGHT;
     set_plain_line(d->cr, (colour){dark, dark, dark}, SECONDARY_WIDTH);
+    cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_ROUND);
     cairo_set_source_rgba(d->cr, dark, dark, dark, 0.85);
 }
 
-// Draws the contour line of a level, square by square.
-static void draw_contour(const drawing *d, const panel_layout *l, double level)
+// The slope at a point of a curve through it and its two neighbours: the harmonic mean of
+// the slopes on both sides, weighted by their lengths, or 0 between slopes of different
+// signs. A missing side leaves the other one's slope.
+static double monotone_slope(double left, double right, double left_slope,
+                             double right_slope)
 {
-    const figure_map *map = l->panel->map;
-    const plane *p = &l->plane;
+    if (!isfinite(left_slope)) {
+        return right_slope;
+    }
+    if (!isfinite(right_slope)) {
+        return left_slope;
+    }
+    if (left_slope * right_slope <= 0) {
+        return 0;
+    }
+    const double near = 2 * right + left, far = 2 * left + right;
+    return (near + far) / (near / left_slope + far / right_slope);
+}
 
-    // the pieces of every square of four points
-    for (size_t i = 0; i + 1 < map->columns; i++) {
-        for (size_t j = 0; j + 1 < map->rows; j++) {
+// The monotone cubic (Fritsch and Butland 1984) between points 1 and 2 of four, at a
+// share of the way. Missing values are NaN; the outer ones may be.
+static double monotone_cubic(const double at[4], const double z[4], double share)
+{
+    double length[3], slope[3];
+    for (int i = 0; i < 3; i++) {
+        length[i] = at[i + 1] - at[i];
+        slope[i] = (z[i + 1] - z[i]) / length[i];
+    }
+    const double begins = monotone_slope(length[0], length[1], slope[0], slope[1]);
+    const double ends = monotone_slope(length[1], length[2], slope[1], slope[2]);
+
+    // by Hermite's polynomials
+    const double t = share, u = 1 - share;
+    return z[1] * u * u * (1 + 2 * t) + z[2] * t * t * (1 + 2 * u) +
+           length[1] * t * u * (begins * u - ends * t);
+}
+
+// Refines values along one axis: `count` of them at at[], a step of `from_step` apart in
+// `from`, become (count - 1) parts + 1 in `to`.
+static void refine_along(const double *at, size_t count, const double *from,
+                         size_t from_step, double *to, size_t to_step, size_t parts)
+{
+    for (size_t i = 0; i + 1 < count; i++) {
+        double place[4], z[4];
+        for (size_t k = 0; k < 4; k++) {
+            const bool there = i + k >= 1 && i + k - 1 < count;
+            place[k] = (double)NAN;
+            z[k] = (double)NAN;
+            if (there) {
+                place[k] = at[i + k - 1];
+                z[k] = from[(i + k - 1) * from_step];
+            }
+        }
+        to[i * parts * to_step] = z[1];
+        for (size_t k = 1; k < parts; k++) {
+            to[(i * parts + k) * to_step] =
+                monotone_cubic(place, z, (double)k / (double)parts);
+        }
+    }
+    to[(count - 1) * parts * to_step] = from[(count - 1) * from_step];
+}
+
+void fine_grid_finish(fine_grid *g)
+{
+    g_free(g->x);
+    g_free(g->y);
+    g_free(g->z);
+}
+
+// First between columns, row by row, then between rows.
+fine_grid map_refine(const figure_map *map, const plane *p, scale_kind kind, size_t parts)
+{
+    assert(map->columns > 1 && map->rows > 1 && parts > 0);
+    fine_grid g = {.columns = (map->columns - 1) * parts + 1,
+                   .rows = (map->rows - 1) * parts + 1};
+    g.x = g_new(double, g.columns);
+    g.y = g_new(double, g.rows);
+    g.z = g_new(double, g.columns *g.rows);
+    g_autofree double *x = g_new(double, map->columns);
+    g_autofree double *y = g_new(double, map->rows);
+    g_autofree double *z = g_new(double, map->columns * map->rows);
+    g_autofree double *between = g_new(double, g.columns * map->rows);
+
+    // places on the page, and values on their scale
+    for (size_t i = 0; i < map->columns; i++) {
+        x[i] = plane_x(p, map->x[i]);
+    }
+    for (size_t j = 0; j < map->rows; j++) {
+        y[j] = plane_y(p, map->y[j]);
+    }
+    for (size_t i = 0; i < map->columns * map->rows; i++) {
+        z[i] = scale_coordinate(kind, map->z[i]);
+    }
+
+    // even places between the points
+    for (size_t i = 0; i < g.columns; i++) {
+        const size_t k = MIN(i / parts, map->columns - 2);
+        g.x[i] = x[k] + (x[k + 1] - x[k]) * (double)(i - k * parts) / (double)parts;
+    }
+    for (size_t j = 0; j < g.rows; j++) {
+        const size_t k = MIN(j / parts, map->rows - 2);
+        g.y[j] = y[k] + (y[k + 1] - y[k]) * (double)(j - k * parts) / (double)parts;
+    }
+
+    // values between them
+    for (size_t j = 0; j < map->rows; j++) {
+        refine_along(x, map->columns, z + j, map->rows, between + j, map->rows, parts);
+    }
+    for (size_t i = 0; i < g.columns; i++) {
+        refine_along(y, map->rows, between + i * map->rows, 1, g.z + i * g.rows, 1,
+                     parts);
+    }
+    return g;
+}
+
+// Adds the contour line of a level, a coordinate of the colour scale, to the path, square
+// by square.
+static void trace_contour(const drawing *d, const fine_grid *g, double level)
+{
+    for (size_t i = 0; i + 1 < g->columns; i++) {
+        for (size_t j = 0; j + 1 < g->rows; j++) {
             contour_piece pieces[2];
-            const double *a = &map->z[i * map->rows + j], *b = a + map->rows;
+            const double *a = &g->z[i * g->rows + j], *b = a + g->rows;
             int count =
                 contour_square((const double[]){a[0], b[0], a[1], b[1]}, level, pieces);
-            double x0 = plane_x(p, map->x[i]), x1 = plane_x(p, map->x[i + 1]);
-            double y0 = plane_y(p, map->y[j]), y1 = plane_y(p, map->y[j + 1]);
+            const double width = g->x[i + 1] - g->x[i], height = g->y[j + 1] - g->y[j];
             for (int k = 0; k < count; k++) {
                 const contour_piece *q = &pieces[k];
-                cairo_move_to(d->cr, x0 + q->x0 * (x1 - x0), y0 + q->y0 * (y1 - y0));
-                cairo_line_to(d->cr, x0 + q->x1 * (x1 - x0), y0 + q->y1 * (y1 - y0));
+                cairo_move_to(d->cr, g->x[i] + q->x0 * width, g->y[j] + q->y0 * height);
+                cairo_line_to(d->cr, g->x[i] + q->x1 * width, g->y[j] + q->y1 * height);
             }
         }
     }
+}
 
+// Strokes the path as the line of zero: black with a white rim, over any colour.
+static void stroke_zero(const drawing *d)
+{
+    cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_ROUND);
+    cairo_set_source_rgb(d->cr, 1, 1, 1);
+    cairo_set_line_width(d->cr, ZERO_WIDTH);
+    cairo_stroke_preserve(d->cr);
+    cairo_set_source_rgb(d->cr, 0, 0, 0);
+    cairo_set_line_width(d->cr, ZERO_CORE);
     cairo_stroke(d->cr);
+    cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_BUTT);
+}
+
+// Draws contour lines at the ticks of the colours, and that of zero.
+static void draw_contours(const drawing *d, const panel_layout *l)
+{
+    const figure_map *map = l->panel->map;
+    const scale_kind kind = l->colours.scale.kind;
+    if (map->columns < 2 || map->rows < 2) {
+        return;
+    }
+
+    // as many parts of a cell as many columns leave room for
+    size_t parts = FINEST_PARTS;
+    while (parts > 1 && parts * MAX(map->columns, map->rows) > FINE_COLUMNS) {
+        parts--;
+    }
+
+    SCOPED(fine_grid_finish) fine_grid g = map_refine(map, &l->plane, kind, parts);
+    for (int i = 0; i < l->colours.count && map->contours; i++) {
+        set_contour_line(d, l, l->colours.at[i]);
+        trace_contour(d, &g, scale_coordinate(kind, l->colours.at[i]));
+        cairo_stroke(d->cr);
+    }
+    if (map->zero) {
+        trace_contour(d, &g, 0);
+        stroke_zero(d);
+    }
 }
 
 // Draws the map of a panel: its cells, and contour lines over them.
@@ -250,13 +404,11 @@ void draw_panel_map(drawing *d, const panel_layout *l)
     cairo_save(d->cr);
     clip_to(d->cr, &l->plane.box);
 
-    // cells, and contour lines at the ticks of the colours
+    // cells, and contour lines over them
     draw_cells(d, l);
-    for (int i = 0; map->contours && i < l->colours.count; i++) {
-        set_contour_line(d, l, l->colours.at[i]);
-        draw_contour(d, l, l->colours.at[i]);
+    if (map->contours || map->zero) {
+        draw_contours(d, l);
     }
-
     cairo_restore(d->cr);
 }
 
@@ -321,6 +473,13 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
         picture_line(d->cr, right, y, right + TICK_LENGTH, y);
         draw_markup(d, l->colours.text[i], d->style.tick,
                     right + TICK_LENGTH + TICK_SPACE, y, (anchor){0, 0.5});
+    }
+    if (l->panel->map != NULL && l->panel->map->zero &&
+        scale_holds(&l->colours.scale, 0)) {
+        const double y = bar.y + bar.height * (1 - scale_share(&l->colours.scale, 0));
+        cairo_move_to(d->cr, bar.x, y);
+        cairo_line_to(d->cr, right, y);
+        stroke_zero(d);
     }
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
     cairo_rectangle(d->cr, bar.x, bar.y, bar.width, bar.height);

@@ -130,6 +130,7 @@ static int plot_survey(const arguments *a, const void *found)
 {
     const stability_survey *survey = found;
     const linear_survey *y = &survey->found;
+    static const figure_level limit = {0};
     owned_figure *drawn[JUDGEMENTS];
     for (int k = 0; k < JUDGEMENTS; k++) {
         const sweep_picture shown = {&y->sweep, judgements[k].key, &judgements[k],
@@ -137,11 +138,22 @@ static int plot_survey(const arguments *a, const void *found)
         drawn[k] = sweep_figure_create(&shown);
     }
 
-    // both as panels of the first one
+    // both as panels of the first one, in which the limit is all that counts
     owned_figure *both = drawn[BY_POLES];
     both->panels[1] = drawn[BY_RUNS]->panels[0];
-    both->panels[0].y.with_zero = y->sweep.axis_count == 1;
     both->panels[0].heading = "linear, without friction: unstable above zero";
+    figure_map with_limit;
+    if (both->panels[0].map != NULL) {
+        with_limit = *both->panels[0].map;
+        with_limit.contours = false;
+        with_limit.zero = true;
+        both->panels[0].map = &with_limit;
+        both->panels[0].heading = "linear, no friction: unstable beyond the thick line";
+    } else if (y->sweep.axis_count == 1) {
+        both->panels[0].y.with_zero = true;
+        both->panels[0].levels = &limit;
+        both->panels[0].level_count = 1;
+    }
     both->panels[1].heading = "runs, with friction: where one has a value it settles";
     both->figure.panel_count = JUDGEMENTS;
 
