@@ -1,7 +1,7 @@
 // What computes is whole without SQLite: this program holds all of it and nothing that
 // stores. A sweep is kept in an array here.
 
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
 

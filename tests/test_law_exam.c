@@ -1,5 +1,5 @@
 // The exam of control laws: cases that nobody chose, judged by bounds.
-#include "src/study/law_exam.h"
+#include "src/study/robust/law_exam.h"
 
 #include "tests/shipped_scenario.h"
 

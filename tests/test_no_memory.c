@@ -8,7 +8,7 @@
 #include "src/session/session.h"
 #include "src/study/batch.h"
 #include "src/study/compare.h"
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 #include "src/study/sweep_run.h"
 #include "tests/refused_requests.h"
 

@@ -4,7 +4,7 @@
 #include "src/run/export.h"
 #include "src/study/calibrate.h"
 #include "src/study/convergence.h"
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 #include "src/study/sweep_run.h"
 #include "src/study/thesis_tables.h"
 #include "tests/refused_requests.h"

@@ -7,9 +7,9 @@
 #include "src/session/session_file.h"
 #include "src/study/identify.h"
 #include "src/study/linear/linear.h"
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 #include "src/study/sweep_definition.h"
-#include "src/study/tune.h"
+#include "src/study/robust/tune.h"
 #include "tests/refused_requests.h"
 
 static const char *put(const char *name, const char *text)

@@ -1,6 +1,6 @@
 // Control laws over many beliefs: the set, the judgement, and that it depends on the seed
 // alone.
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 #include "tests/rig_fixture.h"
 
 static const char path[] = "the.set";

@@ -2,7 +2,7 @@
 // passive hub whose rest moves.
 
 #include "src/rig/laws/laws.h"
-#include "src/study/law_exam.h"
+#include "src/study/robust/law_exam.h"
 #include "tests/rig_fixture.h"
 
 #define TOUCH "control.law=touch"

@@ -1,6 +1,6 @@
 // Tuning: expressions, and that the search finds what is known otherwise.
 #include "src/study/linear/linear.h"
-#include "src/study/tune.h"
+#include "src/study/robust/tune.h"
 
 #include "src/base/expression.h"
 #include "src/study/linear/linear.h"

@@ -4,9 +4,9 @@
 #include "render/plot/figure_description.h"
 #include "src/study/identify.h"
 #include "src/study/linear/linear.h"
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 #include "src/study/sweep.h"
-#include "src/study/tune.h"
+#include "src/study/robust/tune.h"
 
 // --- robust: the distribution of the overshoot, a curve for each law
 

@@ -3,7 +3,7 @@
 // Callers clean up after every refusal.
 #include "tests/fuzz/fuzz.h"
 
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 #include "src/study/sweep.h"
 
 enum { LOOKED_AT = 64 };

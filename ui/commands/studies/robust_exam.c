@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/study/law_exam.h"
+#include "src/study/robust/law_exam.h"
 #include "ui/commands/progress.h"
 #include "ui/commands/results.h"
 

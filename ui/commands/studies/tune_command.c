@@ -10,7 +10,7 @@
 #include "src/base/whole_file.h"
 #include "src/study/linear/linear.h"
 #include "src/study/store/sweep_store.h"
-#include "src/study/tune.h"
+#include "src/study/robust/tune.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 #include "ui/commands/results.h"

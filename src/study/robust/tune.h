@@ -7,7 +7,7 @@
 // the condition, by how much, last those that fail.
 #pragma once
 
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 
 enum {
     TUNE_RUNS = 4000,

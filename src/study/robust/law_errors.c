@@ -1,4 +1,4 @@
-#include "src/study/law_errors.h"
+#include "src/study/robust/law_errors.h"
 
 #include <assert.h>
 #include <math.h>

@@ -14,7 +14,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 
-#include "src/study/law_errors.h"
+#include "src/study/robust/law_errors.h"
 
 enum { EXAM_MOST_LAWS = 8, EXAM_MOST_FORCES = 8, EXAM_MOST_CASES = 100000 };
 

@@ -1,4 +1,4 @@
-#include "src/study/law_exam.h"
+#include "src/study/robust/law_exam.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 // The results of an exam of control laws, for people and for programs, and beside those
 // of an exam before.
-#include "src/study/law_exam.h"
+#include "src/study/robust/law_exam.h"
 
 #include <math.h>
 #include <stdlib.h>

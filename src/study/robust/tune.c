@@ -1,4 +1,4 @@
-#include "src/study/tune.h"
+#include "src/study/robust/tune.h"
 
 #include <assert.h>
 #include <math.h>

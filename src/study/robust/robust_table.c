@@ -6,7 +6,7 @@
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/study/result_rows.h"
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 
 enum {
     CASE, // of a set with cases

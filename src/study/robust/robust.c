@@ -1,4 +1,4 @@
-#include "src/study/robust.h"
+#include "src/study/robust/robust.h"
 
 #include <assert.h>
 #include <math.h>
