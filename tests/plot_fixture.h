@@ -238,12 +238,13 @@ static inline void expect_tidy(const figure *fig)
     SCOPED(artwork_finish) artwork a = artwork_of_figure(fig);
     expect_tidy_page(&a, &r);
     assert_int_equal(r.panel_count, fig->panel_count);
+    const int columns = fig->columns > 0 ? fig->columns : 1;
     for (int i = 0; i < r.panel_count; i++) {
         expect_inside(&r.panels[i], &r.page, "a panel");
-        check_close(r.panels[i].x, r.panels[0].x, 0);
-        check_close(r.panels[i].width, r.panels[0].width, 0);
-        if (i > 0) {
-            check_below(bottom_of(&r.panels[i - 1]), r.panels[i].y);
+        check_close(r.panels[i].x, r.panels[i % columns].x, 0);
+        check_close(r.panels[i].width, r.panels[0].width, 1e-9);
+        if (i >= columns) {
+            check_below(bottom_of(&r.panels[i - columns]), r.panels[i].y);
         }
         if (r.insets[i].width > 0) {
             expect_inside(&r.insets[i], &r.panels[i], "an inset");

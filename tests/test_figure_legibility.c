@@ -7,6 +7,7 @@
 #include "tests/plot_fixture.h"
 
 #include "render/plot/drawing.h"
+#include "render/plot/run_style.h"
 #include "tests/colour_vision.h"
 
 static const double widths[] = {85, 180}; // [mm]
@@ -275,7 +276,11 @@ static void recolour(recoloured *out, const figure *fig, int shift)
         out->panels[p].series = out->series[p];
         for (int i = 0; i < fig->panels[p].series_count; i++) {
             out->series[p][i] = fig->panels[p].series[i];
-            out->series[p][i].colour = (out->series[p][i].colour + shift) % 8;
+            figure_series *other = &out->series[p][i];
+            other->colour = (other->colour + shift) % 8;
+            if (other->run > 0) {
+                other->run += shift;
+            }
         }
     }
 }
@@ -407,26 +412,70 @@ static void check_legends(const figure *fig, figure_theme theme, const char *id,
 
 // ---- tests
 
-TEST(every_figure_can_be_read)
+// Checks all of an artwork; marks are those of a single run.
+static void check_artwork(const artwork *drawn, const char *id, double width)
 {
     static figure_report r;
+    cairo_surface_destroy(page_pixels(drawn, SCALE, &r));
+    check_page(drawn, &r, id, width);
+    check_texts(drawn, id, width);
+    if (drawn->plotted != NULL) {
+        check_frames(drawn->plotted, id, width);
+        check_marks(drawn->plotted, id);
+        for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
+            check_legends(drawn->plotted, theme, id, width);
+        }
+    }
+}
+
+TEST(every_figure_can_be_read)
+{
     complaints = 0;
     for (int i = 0; i < thesis_figure_count(); i++) {
         for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
             const char *id = thesis_figure_at(i)->id;
             SCOPED(artwork_finish)
             artwork drawn = open_figure(id, (figure_options){.look.width = widths[k]});
-            cairo_surface_destroy(page_pixels(&drawn, SCALE, &r));
-            check_page(&drawn, &r, id, widths[k]);
-            check_texts(&drawn, id, widths[k]);
-            if (drawn.plotted != NULL) {
-                check_frames(drawn.plotted, id, widths[k]);
-                check_marks(drawn.plotted, id);
-                for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
-                    check_legends(drawn.plotted, theme, id, widths[k]);
-                }
+            check_artwork(&drawn, id, widths[k]);
+        }
+    }
+    assert_int_equal(complaints, 0);
+}
+
+// Runs side by side: two, as many as one panel shows, and small multiples, in all themes.
+TEST(every_comparison_can_be_read)
+{
+    static const char *const names[] = {"compare/hybrid",       "compare/observer",
+                                        "compare/force-pd",     "compare/impedance",
+                                        "compare/admittance",   "compare/predictive",
+                                        "compare/discontinuous"};
+    enum { MOST = G_N_ELEMENTS(names) };
+    static const int counts[] = {2, RUNS_TOGETHER, MOST};
+    opened_run *opened[MOST];
+    trace_run runs[MOST];
+    fault f = {0};
+    for (int i = 0; i < MOST; i++) {
+        opened[i] = run_open(names[i], NULL, &f);
+        assert_non_null(opened[i]);
+        runs[i] = (trace_run){&opened[i]->scenario, &opened[i]->result, names[i],
+                              .rank = i + 1};
+    }
+
+    complaints = 0;
+    for (size_t c = 0; c < G_N_ELEMENTS(counts); c++) {
+        for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
+            for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
+                const figure_options o = {.look = {.width = widths[k], .theme = theme}};
+                owned_figure *made =
+                    run_figure_create("Runs", NULL, 0, runs, counts[c], &o, &f);
+                assert_non_null(made);
+                SCOPED(artwork_finish) artwork drawn = artwork_of_owned(made);
+                check_artwork(&drawn, formatted("%d runs", counts[c]), widths[k]);
             }
         }
+    }
+    for (int i = 0; i < MOST; i++) {
+        run_close(opened[i]);
     }
     assert_int_equal(complaints, 0);
 }

@@ -1,5 +1,6 @@
 // Figures, judged by their drawing: texts and their places, pixels.
 #include "tests/plot_fixture.h"
+#include "render/plot/run_style.h"
 
 TEST(all_texts_of_a_run_are_drawn)
 {
@@ -386,87 +387,110 @@ TEST(a_busy_line_has_no_dashes)
 
 // ---- runs side by side
 
-// The key has an entry that looks like a series in one respect: its colour, or its line.
-static bool is_in_key(const figure *fig, const figure_series *s, bool by_colour)
+// Names of runs side by side, and the runs: all of one result.
+static void fill_runs(trace_run *runs, char names[][32], int count, const scenario *s,
+                      const run_result *result)
 {
-    bool found = false;
-    for (int i = 0; i < fig->key->series_count; i++) {
-        const figure_series *k = &fig->key->series[i];
-        found = found || (k->label != NULL &&
-                          (by_colour ? k->colour == s->colour
-                                     : k->colour == 6 && k->style == s->style));
+    for (int i = 0; i < count; i++) {
+        snprintf(names[i], 32, "run number %d", i + 1);
+        runs[i] = (trace_run){s, result, names[i], .rank = i + 1};
     }
-    return found;
 }
 
-// Each curve says which run (by its colour) and which signal (by its line) it is, in
-// every panel alike, and one key on top has them all; of eight runs with three signals
-// each, at both widths.
-TEST(each_curve_of_a_comparison_says_run_and_signal)
+// How often a text is on a page.
+static int times_of(const figure_report *r, const char *text)
+{
+    int times = 0;
+    for (int i = 0; i < r->text_count; i++) {
+        times += strcmp(r->texts[i].text, text) == 0;
+    }
+    return times;
+}
+
+// A signal has a panel of its own, in which each run has its colour and its dash, those
+// of its entry in the one key above all panels.
+TEST(a_run_is_a_colour_and_a_dash_and_a_signal_a_panel)
 {
     static const trace_panel panels[] = {
         {.signals = {"last_velocity", "first_velocity"}},
         {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}},
-        {.signals = {"last_angle"}}};
-    static const int signals[] = {2, 3, 1};
+        {.signals = {"force"}, .impulses = true}};
+    enum { SIGNALS = 6 };
     trace_run runs[TRACE_RUNS];
     char names[TRACE_RUNS][32];
     SYNTHETIC(s, run_panels, RUN_PANELS);
-    for (int count = 2; count <= TRACE_RUNS; count += 6) {
+    const int count = RUNS_TOGETHER;
+    fill_runs(runs, names, count, &s.scenario, &s.result);
+    owned_figure *t = trace_figure_create("Runs", panels, 3, runs, count);
+
+    assert_int_equal(t->figure.panel_count, SIGNALS);
+    for (int p = 0; p < SIGNALS; p++) {
+        assert_int_equal(t->panels[p].series_count, count);
         for (int i = 0; i < count; i++) {
-            snprintf(names[i], sizeof names[i], "run number %d", i + 1);
-            runs[i] = (trace_run){&s.scenario, &s.result, names[i], .rank = i + 1};
-        }
-        owned_figure *t = trace_figure_create("Runs", panels, 3, runs, count);
-
-        // colours are the runs', lines the signals': that of a body is the same in all
-        // panels
-        line_style of_body[4];
-        for (int p = 0; p < 3; p++) {
-            const figure_panel *panel = &t->figure.panels[p];
-            assert_int_equal(panel->series_count, count * signals[p]);
-            for (int i = 0; i < panel->series_count; i++) {
-                const figure_series *one = &panel->series[i];
-                const int run = i / signals[p], signal = i % signals[p];
-                const int body =
-                    signal_table[signal_find(panels[p].signals[signal])].body;
-                assert_int_equal(one->run, run + 1);
-                assert_int_equal(one->colour,
-                                 t->figure.panels[0].series[run * signals[0]].colour);
-                if (run == 0 && p == (body == BODY_HUB)) {
-                    of_body[body] = one->style;
-                }
-                assert_int_equal(one->style, of_body[body]);
-                assert_true(is_in_key(&t->figure, one, true) &&
-                            is_in_key(&t->figure, one, false));
+            const figure_series *one = &t->panels[p].series[i];
+            const figure_series *key = &t->figure.key->series[i];
+            assert_int_equal(one->run, i + 1);
+            assert_int_equal(key->run, i + 1);
+            assert_string_equal(one->name, names[i]);
+            for (int k = 0; k < i; k++) {
+                const figure_series *other = &t->panels[p].series[k];
+                assert_int_not_equal(one->colour, other->colour);
+                assert_int_not_equal(one->style, other->style);
             }
         }
-        assert_true(of_body[BODY_HUB] != of_body[BODY_FIRST_LINK] &&
-                    of_body[BODY_HUB] != of_body[BODY_LAST_LINK] &&
-                    of_body[BODY_FIRST_LINK] != of_body[BODY_LAST_LINK]);
-        for (int i = 1; i < count; i++) {
-            assert_int_not_equal(t->figure.key->series[i].colour,
-                                 t->figure.key->series[0].colour);
-        }
-
-        // the key is drawn once, above the panels
-        for (int narrow = 0; narrow < 2; narrow++) {
-            static figure_report r;
-            t->figure.width = narrow ? 85 : 170;
-            t->figure.height = 230;
-            record(&t->figure, &r);
-            expect_tidy(&t->figure);
-            int times = 0;
-            for (int i = 0; i < r.text_count; i++) {
-                const bool named = strcmp(r.texts[i].text, names[0]) == 0;
-                times += named;
-                assert_true(!named || r.texts[i].place.y < r.panels[0].y);
-            }
-            assert_int_equal(times, 1);
-            expect_text(&r, "first link");
-        }
-        owned_figure_destroy(t);
     }
+
+    // impulses are each run's
+    const figure_panel *force = &t->panels[SIGNALS - 1];
+    assert_int_equal(force->impulse_count % count, 0);
+    assert_int_equal(force->impulses[force->impulse_count - 1].run, count);
+
+    // the key is drawn once, above the panels
+    for (int narrow = 0; narrow < 2; narrow++) {
+        static figure_report r;
+        t->figure.width = narrow ? 85 : 170;
+        t->figure.height = 0;
+        record(&t->figure, &r);
+        expect_tidy(&t->figure);
+        assert_int_equal(times_of(&r, names[0]), 1);
+    }
+    owned_figure_destroy(t);
+}
+
+// More runs than dashes have a row each, named once, with the first run behind the others
+// and one range for each signal.
+TEST(many_runs_become_small_multiples)
+{
+    static const trace_panel panels[] = {{.signals = {"hub_angle", "last_angle"}}};
+    enum { SIGNALS = 2 };
+    trace_run runs[TRACE_RUNS];
+    char names[TRACE_RUNS][32];
+    SYNTHETIC(s, run_panels, RUN_PANELS);
+    fill_runs(runs, names, TRACE_RUNS, &s.scenario, &s.result);
+    assert_int_equal(trace_compare_panels(panels, 1, runs, TRACE_RUNS),
+                     SIGNALS * TRACE_RUNS);
+    owned_figure *t = trace_figure_create("Runs", panels, 1, runs, TRACE_RUNS);
+
+    for (int p = 0; p < SIGNALS * TRACE_RUNS; p++) {
+        const figure_panel *panel = &t->panels[p];
+        const int run = p / SIGNALS;
+        assert_int_equal(panel->series_count, run == 0 ? 1 : 2);
+        assert_int_equal(panel->series[panel->series_count - 1].run, run + 1);
+    }
+    for (int narrow = 0; narrow < 2; narrow++) {
+        static figure_report r;
+        t->figure.width = narrow ? 85 : 170;
+        record(&t->figure, &r);
+        expect_tidy(&t->figure);
+        for (int i = 0; i < TRACE_RUNS; i++) {
+            assert_int_equal(times_of(&r, names[i]), 1);
+        }
+        for (int p = SIGNALS; p < r.panel_count; p++) {
+            check_close(r.ranges[p].y_high, r.ranges[p - SIGNALS].y_high, 1e-12);
+            check_close(r.ranges[p].y_low, r.ranges[p - SIGNALS].y_low, 1e-12);
+        }
+    }
+    owned_figure_destroy(t);
 }
 
 // ---- runs and the thesis's figures

@@ -128,6 +128,13 @@ static char *describe_figure(const figure *fig)
         }
     }
 
+    // runs of all panels
+    const char *before = "; runs: ";
+    for (int k = 0; fig->key != NULL && k < fig->key->series_count; k++) {
+        append_plain(out, before, fig->key->series[k].label);
+        before = ", ";
+    }
+
     g_string_append(out, ".");
     return g_string_free(out, FALSE);
 }

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "render/plot/run_style.h"
 #include "src/base/words.h"
 
 // ---- scenarios run for figures
@@ -163,8 +164,16 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels,
     trace_run all[TRACE_RUNS];
     trace_panel asked[FIGURE_PANELS];
 
-    // the panels: those asked for, those given, or the usual ones
-    if (panels == NULL) {
+    // the panels: those asked for, those given, or the usual ones, of which many runs
+    // side by side show less
+    const bool together = panels == NULL && runs[0].rank > 0;
+    if (together && run_count > RUNS_TOGETHER) {
+        panels = multiple_panels;
+        panel_count = MULTIPLE_PANELS;
+    } else if (together) {
+        panels = together_panels;
+        panel_count = USUAL_PANELS;
+    } else if (panels == NULL) {
         panels = usual_panels;
         panel_count = USUAL_PANELS;
     }
@@ -173,6 +182,19 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels,
             return NULL;
         }
         panels = asked;
+    }
+
+    // room for all panels
+    int needed = panel_count;
+    if (runs[0].rank > 0) {
+        needed = trace_compare_panels(panels, panel_count, runs, run_count);
+    }
+    if (needed > FIGURE_PANELS) {
+        fault_set(f, STATUS_BAD_ARGUMENT,
+                  "%d runs of these signals make %d panels, expected at most %d: choose "
+                  "signals by --signals",
+                  run_count, needed, FIGURE_PANELS);
+        return NULL;
     }
 
     // room for all runs

@@ -43,6 +43,7 @@ enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8, NOTES_PLACED = 2
 #define LABEL_GAP     3.0  // least distance of labels of ticks
 #define PANEL_SPACE   8.0  // between panels
 #define HEADING_ROW   11.0 // height of a panel's heading
+#define LEGEND_ROW    11.0 // height of a legend above its panel
 #define MARK_ROW      9.0  // height of a row of event labels
 #define STRIP_HEIGHT  20.0 // of the strip for impulses
 #define STRIP_SPACE   5.0  // between it and its panel

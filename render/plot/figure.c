@@ -155,6 +155,9 @@ void figure_size(const figure *fig, double *width, double *height)
         if (p->heading != NULL) {
             points += HEADING_ROW;
         }
+        if (p->key_above) {
+            points += LEGEND_ROW;
+        }
     }
 
     // the axis below, title and caption
@@ -427,7 +430,9 @@ static void write_panel(long_form *t, const figure_panel *panel)
     }
     for (int i = 0; i < panel->impulse_count; i++) {
         write_panel_name(t, panel);
-        write_name(t, "impulse", NULL, panel->impulse_unit);
+        const char *of = panel->impulses[i].of;
+        g_autofree char *name = g_strconcat("impulse", of == NULL ? "" : " ", of, NULL);
+        write_name(t, name, NULL, panel->impulse_unit);
         write_point(t, panel->impulses[i].x, panel->impulses[i].size, (double)NAN);
     }
 

@@ -64,9 +64,8 @@ typedef struct figure_series {
         stride; // bytes from one value to the next, in x, y and shade; 0: sizeof(double)
     int colour; // slot in the palette, 0-7
     line_style style; // changed if an earlier series of the panel has the same
-    int run; // 1 to 8: of one of several runs. It keeps its style, which tells the
-             // signal, and has a grey and a width of its own where there are
-             // no colours
+    int run; // from 1 on: of one of several runs, whose look it has (run_style_of); or
+             // RUN_BEHIND
     marker_kind marker; // at every point
     double radius;      // of markers [pt]; 0: the style's
     bool secondary;     // thinner and dashed, for a second run of the same quantity
@@ -130,6 +129,8 @@ typedef struct figure_note {
 // strip above the panel.
 typedef struct figure_impulse {
     double x, size;
+    int run;        // from 1 on: of one of several runs, whose colour it has
+    const char *of; // its name, plain, for the CSV
 } figure_impulse;
 
 typedef struct figure_panel {
@@ -154,6 +155,8 @@ typedef struct figure_panel {
     // without the legend that two or more curves have: inside the panel where there are
     // no data, otherwise in a row above
     bool keyless;
+    bool
+        key_above; // its legend stands in a row above it, at its left, with one entry too
 } figure_panel;
 
 typedef struct figure {
@@ -175,12 +178,13 @@ typedef struct figure {
     double width, height; // of the page [mm]; 0: 170 wide, as high as the panels need
     double dpi;           // of a PNG; 0: 200
     figure_theme theme;
-    const char *font; // family; NULL: the default
-    double letters;   // size of labels [pt]; 0: 8
-    bool bare;        // without title and caption
-    bool transparent; // without a background
-    bool equal_axes;  // a unit is as long on the one axis as on the other; both linear
-    bool shared_y;    // all panels have one vertical axis, labelled in the first column
+    const char *font;   // family; NULL: the default
+    double letters;     // size of labels [pt]; 0: 8
+    bool bare;          // without title and caption
+    bool transparent;   // without a background
+    bool equal_axes;    // a unit is as long on the one axis as on the other; both linear
+    bool shared_y;      // all panels have one vertical axis, labelled in the first column
+    bool common_scales; // panels of one quantity have one vertical range
     const char *parameters; // plain, for the file's metadata
 } figure;
 

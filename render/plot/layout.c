@@ -13,7 +13,6 @@
 // of a panel whose vertical axis is labelled in the first column
 #define SHARED_SPACE 6.0
 #define BAR_TICK     16.0 // of a colour bar to a tick
-#define LEGEND_ROW   11.0 // height of a legend above its panel
 #define X_TICK       42.0 // of a horizontal axis to a tick
 #define Y_TICK       20.0 // of a vertical axis
 #define DECADE_TICK  14.0 // of a logarithmic vertical axis
@@ -109,16 +108,29 @@ static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
     return widen_range(y, room, &panel->y, f);
 }
 
-// One vertical axis for all panels: from the lowest to the highest end.
+// Whether two panels have one vertical range: all of the figure, or those of a quantity.
+static bool share_range(const drawing *d, int one, int other)
+{
+    const figure_panel *panels = d->fig->panels;
+    return d->fig->shared_y || g_strcmp0(panels[one].y.name, panels[other].y.name) == 0;
+}
+
+// One vertical range for panels that share it: from the lowest to the highest end.
 static void share_y_ranges(drawing *d)
 {
-    axis_scale all = d->panels[0].plane.y;
-    for (int i = 0; i < d->fig->panel_count; i++) {
-        all.low = fmin(all.low, d->panels[i].plane.y.low);
-        all.high = fmax(all.high, d->panels[i].plane.y.high);
+    const int count = d->fig->panel_count;
+    axis_scale own[FIGURE_PANELS];
+    for (int i = 0; i < count; i++) {
+        own[i] = d->panels[i].plane.y;
     }
-    for (int i = 0; i < d->fig->panel_count; i++) {
-        d->panels[i].plane.y = all;
+    for (int i = 0; i < count; i++) {
+        axis_scale *all = &d->panels[i].plane.y;
+        for (int k = 0; k < count; k++) {
+            if (share_range(d, i, k)) {
+                all->low = fmin(all->low, own[k].low);
+                all->high = fmax(all->high, own[k].high);
+            }
+        }
     }
 }
 
@@ -234,7 +246,7 @@ static double space_above(const panel_layout *l)
     if (l->legend_column) {
         space += l->legend.height + 2;
     } else if (l->legend_row) {
-        space += LEGEND_ROW;
+        space += fmax(LEGEND_ROW, l->legend.height + 2);
     }
     if (l->panel->heading != NULL) {
         space += HEADING_ROW;
@@ -432,11 +444,13 @@ static bool fill_panels(drawing *d, placement *grid)
             moved = true;
         }
         place_inset(d, l, grid);
-        bool column = l->legend_column;
+        const bool column = l->legend_column;
+        const double height = l->legend.height;
         if (!place_legend(d, l, grid)) {
             l->legend_row = moved = true;
         }
-        moved = moved || l->legend_column != column;
+        moved = moved || l->legend_column != column ||
+                (l->panel->key_above && l->legend.height > height);
     }
     return moved;
 }
@@ -524,6 +538,7 @@ status layout_figure(drawing *d, fault *f)
     for (int i = 0; i < fig->panel_count; i++) {
         panel_layout *l = &d->panels[i];
         l->panel = &fig->panels[i];
+        l->legend_row = l->panel->key_above;
         l->row = i / d->columns;
         l->column = i % d->columns;
         TRY(choose_y_range(d, l, f));
@@ -531,7 +546,7 @@ status layout_figure(drawing *d, fault *f)
             map_choose_scale(l);
         }
     }
-    if (fig->shared_y) {
+    if (fig->shared_y || fig->common_scales) {
         share_y_ranges(d);
     }
 

@@ -247,6 +247,17 @@ static int labelled_series(const figure_panel *panel)
     return count;
 }
 
+// The width of a text in a legend above its panel, which leaves the column beside it
+// free; 0: any.
+static double key_wrapped(const drawing *d, const panel_layout *l)
+{
+    const column_layout *c = &d->column[l->column];
+    if (!l->panel->key_above) {
+        return 0;
+    }
+    return c->right - c->left - SWATCH - SWATCH_SPACE;
+}
+
 // ---- where they go
 
 // Places the legend of a panel: in the panel, or in a row or column above it. False if it
@@ -257,7 +268,9 @@ bool place_legend(drawing *d, panel_layout *l, const placement *grid)
     l->legend_inside = false;
 
     // a panel with a single series, or none, needs no legend
-    if (d->fig->common_legend || l->panel->keyless || labelled_series(l->panel) < 2) {
+    const bool above = l->panel->key_above;
+    const bool alone = labelled_series(l->panel) < 2 && !above;
+    if (d->fig->common_legend || l->panel->keyless || alone) {
         l->legend_row = l->legend_column = false;
         return true;
     }
@@ -265,16 +278,18 @@ bool place_legend(drawing *d, panel_layout *l, const placement *grid)
     // a row that is wider than the panel becomes a column
     const column_layout *c = &d->column[l->column];
     legend_run run = {.right = (double)INFINITY, .column = !l->legend_row};
+    run.wrapped = key_wrapped(d, l);
     figure_rect size = lay_entries(d, l, run);
-    if (l->legend_row && size.width > c->right - c->left) {
+    if (l->legend_row && !above && size.width > c->right - c->left) {
         l->legend_column = run.column = true;
         size = lay_entries(d, l, run);
     }
 
-    // above the panel, at its right end
+    // above the panel, at its right end or its left
     if (l->legend_row) {
-        l->legend = (figure_rect){c->right - size.width, l->plane.box.y - size.height - 1,
-                                  size.width, size.height};
+        const double left = above ? c->left : c->right - size.width;
+        l->legend = (figure_rect){left, l->plane.box.y - size.height - 1, size.width,
+                                  size.height};
         if (l->panel->heading != NULL) {
             l->legend.y -= HEADING_ROW;
         }
@@ -301,6 +316,7 @@ void draw_panel_legend(drawing *d, const panel_layout *l)
     if (l->legend.width > 0) {
         lay_entries(d, l,
                     (legend_run){l->legend.x, l->legend.y, .right = (double)INFINITY,
+                                 .wrapped = key_wrapped(d, l),
                                  .column = l->legend_inside || l->legend_column,
                                  .draw = true});
     }

@@ -3,9 +3,9 @@
 
 #include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
+#include "render/plot/run_style.h"
 
 #define MARKER_RADIUS 1.6
-#define RUN_WIDER     0.7 // growth of the width each time that all greys are used up
 #define BUSY_WIDER    1.7 // factor of a busy line's width
 #define RIM           0.8 // width of a rim in the page's colour, at either side
 
@@ -15,8 +15,8 @@
 #define MOST_TURNS    12   // of a line that is never busy
 #define BUSY_DISTANCE 16.0 // from turn to turn, some three dashes
 
-// Indices of greys in palette_series, and how many greys runs have.
-enum { DARKEST_GREY = 0, LIGHTEST_GREY = 4, GREYS = 3 };
+// Indices of greys in palette_series.
+enum { DARKEST_GREY = 0, LIGHTEST_GREY = 4 };
 
 enum { STYLES = 4 };
 
@@ -65,17 +65,15 @@ typedef struct series_pen {
     double width; // [pt]
 } series_pen;
 
-// The pen of a series of one of several runs: the signal decides the style, the run the
-// colour. Without colours there are three greys, and further runs have wider lines.
+// The pen of a series of one of several runs: the run's look, or that of a run which
+// stands behind another.
 static series_pen run_pen(const drawing *d, const figure_series *s)
 {
-    const int rank = s->run - 1;
-    series_pen pen = {palette_series(d->style.theme, s->colour, 2 * rank), s->style,
-                      series_width(s)};
-    if (d->style.theme == THEME_MONO) {
-        pen.width *= 1 + RUN_WIDER * (rank / GREYS);
+    if (s->run == RUN_BEHIND) {
+        return (series_pen){d->style.colours->mark, LINE_SOLID, SECONDARY_WIDTH};
     }
-    return pen;
+    return (series_pen){run_ink(d->style.theme, s->run), run_style_of(s->run).dash,
+                        CURVE_WIDTH};
 }
 
 // The pen of a busy line, in which no pattern would show. Without colours the first busy
@@ -106,7 +104,7 @@ static series_pen busy_pen(const drawing *d, const panel_layout *l, int index)
 static series_pen pen_of(const drawing *d, const panel_layout *l, int index)
 {
     const figure_series *s = &l->panel->series[index];
-    if (s->run > 0) {
+    if (s->run != 0) {
         return run_pen(d, s);
     }
     if (l->busy[index]) {
@@ -501,6 +499,21 @@ static void label_impulses(drawing *d, const panel_layout *l, double base)
     }
 }
 
+// The look of an impulse: its run's, or that of all. With the dash of one the equal arrow
+// of another run shows below it.
+static void set_impulse(const drawing *d, const figure_impulse *p)
+{
+    colour ink = palette_series(d->style.theme, SLOT_PURPLE, 0);
+    line_style dash = LINE_SOLID;
+    if (p->run > 0) {
+        ink = run_ink(d->style.theme, p->run);
+        dash = run_style_of(p->run).dash;
+    }
+    set_colour(d->cr, ink);
+    set_line_style(d->cr, dash, CURVE_WIDTH);
+    cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_BUTT);
+}
+
 // Draws the strip of impulses above a panel: a base line, an arrow with its size for each
 // impulse, and the strip's label.
 void draw_impulses(drawing *d, const panel_layout *l)
@@ -521,8 +534,7 @@ void draw_impulses(drawing *d, const panel_layout *l)
         if (impulse_shows(d, p)) {
             const double length =
                 LEAST_ARROW + (LONGEST_ARROW - LEAST_ARROW) * fabs(p->size) / largest;
-            set_plain_line(d->cr, palette_series(d->style.theme, SLOT_PURPLE, 0),
-                           CURVE_WIDTH);
+            set_impulse(d, p);
             draw_upward_arrow(d->cr, plane_x(&l->plane, p->x), base, length);
         }
     }

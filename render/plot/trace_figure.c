@@ -36,15 +36,6 @@ static void put_behind(owned_figure *o, figure_series *s, const trace_run *run,
     }
 }
 
-// Of runs side by side each has a colour, and a signal has one line in all.
-static void set_rank(figure_series *s, const trace_run *run, line_style line)
-{
-    s->secondary = false;
-    s->run = run->rank;
-    s->colour = palette_slot(run->rank - 1);
-    s->style = line;
-}
-
 static void show_as_points(figure_series *s)
 {
     s->no_line = true;
@@ -87,8 +78,7 @@ static const char *label_of(const trace_figure *t, int panel, int run, int index
 }
 
 // The series of one run in a panel.
-static void add_run_curves(const trace_figure *t, const trace_key *key, int panel,
-                           int run)
+static void add_run_curves(const trace_figure *t, int panel, int run)
 {
     const trace_run *of = &t->runs[run];
     const trace_panel *from = &t->panels[panel];
@@ -115,10 +105,6 @@ static void add_run_curves(const trace_figure *t, const trace_key *key, int pane
             separate_colours(&t->drawn->panels[panel], s);
         } else {
             put_behind(t->drawn, s, of, only_signal);
-        }
-        if (of->rank > 0) {
-            set_rank(s, of, trace_key_line(key, index));
-            continue;
         }
 
         // with its entry in the legend
@@ -148,26 +134,8 @@ static void enlarge_pulse(figure_panel *panel, const trace_run *run)
     }
 }
 
-// The vertical axis of a panel, named after its first signal, whose symbol names the
-// body.
-static figure_axis signal_axis(const trace_figure *t, const trace_panel *from)
-{
-    const int index = signal_index(from->signals[0]);
-    const signal_info *first = &signal_table[index];
-    const char *symbol =
-        owned_figure_keep(t->drawn, trace_symbol(t->runs[0].scenario, index));
-    figure_axis y = {first->name, from->label, first->unit, .with_zero = from->with_zero};
-    if (y.label == NULL) {
-        y.label = owned_figure_printf(t->drawn, "%s %s", first->quantity, symbol);
-    }
-    if (from->signals[1] == NULL) {
-        y.symbol = symbol;
-    }
-    return y;
-}
-
 // A panel with its axis, the curves of all runs, and what is drawn with them.
-static void describe_trace_panel(const trace_figure *t, const trace_key *key, int index)
+static void describe_trace_panel(const trace_figure *t, int index)
 {
     owned_figure *o = t->drawn;
     figure_panel *panel = &o->panels[index];
@@ -175,10 +143,10 @@ static void describe_trace_panel(const trace_figure *t, const trace_key *key, in
     const wall_parameters *wall = &t->runs[0].scenario->parameters.wall;
 
     // curves of all runs
-    panel->y = signal_axis(t, from);
+    panel->y = trace_signal_axis(t, from);
     panel->weight = from->weight;
     for (int run = 0; run < t->run_count; run++) {
-        add_run_curves(t, key, index, run);
+        add_run_curves(t, index, run);
     }
 
     // what is drawn with them
@@ -223,9 +191,7 @@ static void add_residuals(const trace_figure *t, const trace_run *measured)
     s->colour = SLOT_BLACK;
     s->marker = MARKER_CIRCLE;
     s->no_line = true;
-    o->panels[last].y = (figure_axis){"residual", "Residual", signal_table[index].unit,
-                                      "Δ", .with_zero = true};
-    o->panels[last].weight = 0.6;
+    trace_residual_axis(&o->panels[last], index);
     o->figure.panel_count++;
 }
 
@@ -248,6 +214,9 @@ owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
 {
     assert(panel_count >= 1 && panel_count <= FIGURE_PANELS);
     assert(run_count >= 1 && run_count <= TRACE_RUNS);
+    if (runs[0].rank > 0) {
+        return trace_compare_create(title, panels, panel_count, runs, run_count);
+    }
 
     // what is shaded
     bool modes = false;
@@ -265,9 +234,8 @@ owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
 
     // panels with the curves of all runs
     const trace_figure t = {o, panels, runs, run_count};
-    const trace_key *key = trace_key_create(&t);
     for (int i = 0; i < panel_count; i++) {
-        describe_trace_panel(&t, key, i);
+        describe_trace_panel(&t, i);
     }
     for (int run = 1; run < run_count; run++) {
         if (runs[run].points) {
@@ -296,6 +264,20 @@ const trace_panel usual_panels[USUAL_PANELS] = {
      .signals = {"voltage"},
      .with_zero = true,
      .weight = 0.5},
+};
+
+const trace_panel together_panels[USUAL_PANELS] = {
+    {.signals = {"force"}, .with_zero = true, .impulses = true},
+    {.signals = {"voltage"}, .with_zero = true},
+    {.signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
+    {.signals = {"hub_velocity", "first_velocity", "last_velocity"}},
+};
+
+// What drives the arm stands before what comes of it, as run by run the name stands at
+// the left.
+const trace_panel multiple_panels[MULTIPLE_PANELS] = {
+    {.signals = {"voltage"}, .with_zero = true},
+    {.signals = {"force"}, .with_zero = true, .impulses = true},
 };
 
 // The usual panels, with notes as further marks.

@@ -81,6 +81,31 @@ char *trace_series_label(const scenario *s, int index, bool joined)
     return text_printf("%s  %s", symbol, words);
 }
 
+// ---- axes
+
+figure_axis trace_signal_axis(const trace_figure *t, const trace_panel *from)
+{
+    const int index = signal_index(from->signals[0]);
+    const signal_info *first = &signal_table[index];
+    const char *symbol =
+        owned_figure_keep(t->drawn, trace_symbol(t->runs[0].scenario, index));
+    figure_axis y = {first->name, from->label, first->unit, .with_zero = from->with_zero};
+    if (y.label == NULL) {
+        y.label = owned_figure_printf(t->drawn, "%s %s", first->quantity, symbol);
+    }
+    if (from->signals[1] == NULL) {
+        y.symbol = symbol;
+    }
+    return y;
+}
+
+void trace_residual_axis(figure_panel *panel, int index)
+{
+    panel->y = (figure_axis){"residual", "Residual", signal_table[index].unit, "Δ",
+                             .with_zero = true};
+    panel->weight = 0.6;
+}
+
 // A duration in µs, ms or s, whichever makes the number short.
 static char *duration_text(double seconds)
 {
@@ -105,21 +130,158 @@ const char *trace_mode_name(const scenario *s, int mode)
     return NULL;
 }
 
-// Adds what drives the arm to a caption: a voltage, or a controller.
-static void add_drive(GString *out, const parameters *p)
-{
-    if (p->control.law == LAW_NONE) {
-        text_append(out, ", %g\u2009V; ", p->motor.voltage);
-        return;
-    }
+// ---- captions
 
-    // the law with its rate and its command
-    const char *law = control_law_table[p->control.law].word;
-    text_append(out, ", on the rig: %s at %g\u2009Hz", law, p->control.rate);
-    if (p->control.law == LAW_OPEN_LOOP) {
-        text_append(out, ", %g\u2009V; ", p->control.approach_voltage);
+// A part of what a run is, for a caption. Parts follow each other in a sentence, so that
+// each begins with what separates it from those before it.
+typedef void (*run_part)(GString *out, const trace_run *run);
+
+static void add_model(GString *out, const trace_run *run)
+{
+    const bool printed = run->scenario->parameters.arm.model == ARM_PRINTED;
+    text_append(out, "%s model", printed ? "printed" : "corrected");
+}
+
+static void add_links(GString *out, const trace_run *run)
+{
+    const int links = run->scenario->parameters.arm.links;
+    text_append(out, ", %d %s", links, links == 1 ? "link" : "links");
+}
+
+static void add_hub(GString *out, const trace_run *run)
+{
+    static const char *const hub_texts[] = {
+        [HUB_RIGID] = "rigid", [HUB_SPRING] = "spring", [HUB_BEAM] = "beam's"};
+    text_append(out, ", %s hub", hub_texts[run->scenario->parameters.arm.hub_joint]);
+}
+
+// Of the printed model the constants that may differ from the thesis's or the beam's.
+static void add_printed_constants(GString *out, const trace_run *run)
+{
+    const arm_parameters *arm = &run->scenario->parameters.arm;
+    if (arm->model == ARM_PRINTED) {
+        g_autofree char *inertia = text_number(arm->link_inertia, 3);
+        text_append(
+            out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = %s\u2009kg·m²",
+            arm->k1, inertia);
+    }
+}
+
+// What drives the arm: a voltage, or a rig.
+static void add_drive(GString *out, const trace_run *run)
+{
+    const parameters *p = &run->scenario->parameters;
+    if (p->control.law == LAW_NONE) {
+        text_append(out, ", %g\u2009V", p->motor.voltage);
     } else {
-        text_append(out, ", %g\u2009N commanded; ", p->control.force);
+        text_append(out, ", on the rig");
+    }
+}
+
+static void add_law(GString *out, const trace_run *run)
+{
+    const control_parameters *control = &run->scenario->parameters.control;
+    if (control->law != LAW_NONE) {
+        text_append(out, ": %s", control_law_table[control->law].word);
+    }
+}
+
+static void add_rate(GString *out, const trace_run *run)
+{
+    const control_parameters *control = &run->scenario->parameters.control;
+    if (control->law != LAW_NONE) {
+        text_append(out, " at %g\u2009Hz", control->rate);
+    }
+}
+
+static void add_command(GString *out, const trace_run *run)
+{
+    const control_parameters *control = &run->scenario->parameters.control;
+    if (control->law == LAW_OPEN_LOOP) {
+        text_append(out, ", %g\u2009V", control->approach_voltage);
+    } else if (control->law != LAW_NONE) {
+        text_append(out, ", %g\u2009N commanded", control->force);
+    }
+}
+
+static void add_method(GString *out, const trace_run *run)
+{
+    const parameters *p = &run->scenario->parameters;
+    const bool printed = p->arm.model == ARM_PRINTED;
+    if (printed || p->method.name == METHOD_NEWMARK) {
+        text_append(out, "; Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta,
+                    p->method.gamma);
+    } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
+        text_append(out, "; generalised α, <i>ρ</i><sub>∞</sub> = %g",
+                    p->method.spectral_radius);
+    } else {
+        text_append(out, "; %s engine, located events", run->result->summary.method);
+    }
+}
+
+// The step of the method; for the event method it is only the spacing of rows.
+static void add_step(GString *out, const trace_run *run)
+{
+    const parameters *p = &run->scenario->parameters;
+    g_autofree char *step = duration_text(p->method.step);
+    if (p->arm.model != ARM_PRINTED && p->method.name == METHOD_EVENT) {
+        text_append(out, ", a row every %s", step);
+    } else {
+        text_append(out, ", <i>h</i> = %s", step);
+    }
+}
+
+static const run_part run_parts[] = {add_model,  add_links,
+                                     add_hub,    add_printed_constants,
+                                     add_drive,  add_law,
+                                     add_rate,   add_command,
+                                     add_method, add_step};
+
+// A part where all runs have it in the same words, else an empty text.
+static char *shared_part(run_part add, const trace_run *runs, int run_count)
+{
+    GString *first = g_string_new(NULL);
+    add(first, &runs[0]);
+    for (int i = 1; i < run_count && first->len > 0; i++) {
+        GString *other = g_string_new(NULL);
+        add(other, &runs[i]);
+        if (!g_string_equal(first, other)) {
+            g_string_truncate(first, 0);
+        }
+        g_string_free(other, TRUE);
+    }
+    return g_string_free(first, FALSE);
+}
+
+char *trace_shared(const trace_run *runs, int run_count)
+{
+    GString *out = g_string_new(NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(run_parts); i++) {
+        g_autofree char *part = shared_part(run_parts[i], runs, run_count);
+        const char *said = part;
+        if (out->len == 0) {
+            said += strspn(said, ",;: ");
+        }
+        g_string_append(out, said);
+    }
+    return g_string_free(out, FALSE);
+}
+
+void trace_add_ending(GString *out, const trace_run *runs, int run_count)
+{
+    text_append(out, " impactlab %s.", lab_version());
+    for (int i = 0; i < run_count; i++) {
+        const summary *m = &runs[i].result->summary;
+        if (m->status == STATUS_OK) {
+            continue;
+        }
+        g_autofree char *why = text_escape(m->message);
+        g_autofree char *name = text_escape(text_or(runs[i].name, ""));
+        if (run_count == 1) {
+            text_append(out, " <b>The run failed:</b> %s", why);
+        } else {
+            text_append(out, " <b>%s failed:</b> %s", name, why);
+        }
     }
 }
 
@@ -145,65 +307,15 @@ static void add_shading(GString *out, const trace_run *runs, int run_count,
                 name);
 }
 
-// Adds the model and its arm to a caption; for the printed model also the constants that
-// may differ from the thesis's or the beam's.
-static void add_arm(GString *out, const parameters *p)
-{
-    static const char *const hub_texts[] = {
-        [HUB_RIGID] = "rigid", [HUB_SPRING] = "spring", [HUB_BEAM] = "beam's"};
-    const bool printed = p->arm.model == ARM_PRINTED;
-    const char *model = printed ? "Printed" : "Corrected";
-    const char *links = p->arm.links == 1 ? "link" : "links";
-    text_append(out, "%s model, %d %s, %s hub", model, p->arm.links, links,
-                hub_texts[p->arm.hub_joint]);
-    if (printed) {
-        g_autofree char *inertia = text_number(p->arm.link_inertia, 3);
-        text_append(
-            out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = %s\u2009kg·m²",
-            p->arm.k1, inertia);
-    }
-}
-
-// Adds the method of a run and its step to a caption.
-static void add_method(GString *out, const trace_run *run)
-{
-    const parameters *p = &run->scenario->parameters;
-    const bool printed = p->arm.model == ARM_PRINTED;
-    if (printed || p->method.name == METHOD_NEWMARK) {
-        text_append(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta,
-                    p->method.gamma);
-    } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
-        text_append(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g",
-                    p->method.spectral_radius);
-    } else {
-        text_append(out, "%s engine, located events", run->result->summary.method);
-    }
-
-    // for the event method the step is only the spacing of rows
-    g_autofree char *step = duration_text(p->method.step);
-    if (!printed && p->method.name == METHOD_EVENT) {
-        text_append(out, ", a row every %s. ", step);
-    } else {
-        text_append(out, ", <i>h</i> = %s. ", step);
-    }
-}
-
-// From the arm to what went wrong, in the order of these calls.
+// From the arm to what went wrong.
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
 {
-    const trace_run *run = &runs[0];
-    GString *out = g_string_new(NULL);
-    add_arm(out, &run->scenario->parameters);
-    add_drive(out, &run->scenario->parameters);
-    add_method(out, run);
+    g_autofree char *shared = trace_shared(runs, 1);
+    GString *out = g_string_new(shared);
+    out->str[0] = g_ascii_toupper(out->str[0]);
+    g_string_append(out, ". ");
     add_shading(out, runs, run_count, shaded);
-    text_append(out, " impactlab %s.", lab_version());
-
-    // what went wrong
-    if (run->result->summary.status != STATUS_OK) {
-        g_autofree char *why = text_escape(run->result->summary.message);
-        text_append(out, " <b>The run failed:</b> %s", why);
-    }
+    trace_add_ending(out, runs, 1);
     return g_string_free(out, FALSE);
 }
 

@@ -30,8 +30,8 @@ typedef struct trace_run {
     bool brief;  // further runs only: the first signal of each panel, in grey
     bool steps;  // a small point at every row: the steps of the method
     bool points; // further runs only: reference data, points where it has a number
-    int rank;    // 0: as above; otherwise a colour of its own, 1 to 8, and lines tell
-                 // signals
+    int rank;    // 0: as above; otherwise one of runs side by side, which has the look
+                 // run_style_of(rank), 1 to TRACE_RUNS
 } trace_run;
 
 // The scenario's title, and what was changed of what it speaks of. Free with g_free.
@@ -63,13 +63,28 @@ void trace_shade(owned_figure *o, const trace *rows, bool modes);
 
 // A figure of panels (1 to FIGURE_PANELS, of known signals) of runs (1 to TRACE_RUNS),
 // which must outlive it, with an additional last panel of residuals if there are
-// reference data. `title` is plain, NULL for the first scenario's.
+// reference data. `title` is plain, NULL for the first scenario's. Runs with ranks are
+// those of trace_compare_create.
 owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
                                   int panel_count, const trace_run *runs, int run_count);
 
-// The default panels of a run.
+// Runs side by side, each with its rank, then reference data without one. Each signal of
+// the panels has a panel of its own; beyond RUNS_TOGETHER runs each run has a row of them
+// with the first run in grey behind it. The caption says what the runs share, the key
+// what differs. Marks, shading and insets, which would be those of one run, are left out.
+owned_figure *trace_compare_create(const char *title, const trace_panel *panels,
+                                   int panel_count, const trace_run *runs, int run_count);
+
+// The panels that such a figure needs without residuals; it has room for FIGURE_PANELS.
+int trace_compare_panels(const trace_panel *panels, int panel_count,
+                         const trace_run *runs, int run_count);
+
+// The default panels of a run, of runs side by side, and of runs in small multiples.
 enum { USUAL_PANELS = 4 };
 extern const trace_panel usual_panels[USUAL_PANELS];
+extern const trace_panel together_panels[USUAL_PANELS];
+enum { MULTIPLE_PANELS = 2 };
+extern const trace_panel multiple_panels[MULTIPLE_PANELS];
 
 // The picture of `run --plot`: contact force with the impulses, angles, angular
 // velocities and the voltage over time, together with an older run of the scenario
@@ -111,24 +126,6 @@ typedef struct trace_figure {
 // hub's, and of data only what was measured: trace_series.c
 bool trace_shows(const trace_run *run, const trace_panel *panel, int index);
 
-// --- the key of runs side by side: trace_key.c
-
-enum { TRACE_KEY_ENTRIES = TRACE_RUNS + FIGURE_PANELS * TRACE_SIGNALS };
-
-// The legend of runs side by side: their colours, then the lines of signals, then data.
-typedef struct trace_key {
-    figure_panel panel;
-    figure_series series[TRACE_KEY_ENTRIES];
-    int signals[TRACE_KEY_ENTRIES]; // whose line it is; negative: a run's colour
-} trace_key;
-
-// Gives signals that stand in one panel different lines, and the figure one legend for
-// both runs and signals; empty where no run has a rank. Kept by the figure.
-const trace_key *trace_key_create(const trace_figure *from);
-
-// The line of a signal in all panels and runs.
-line_style trace_key_line(const trace_key *key, int index);
-
 // --- labels: trace_labels.c. Free the texts with g_free.
 
 // Whether the hub is rigidly joined to the first link.
@@ -144,8 +141,20 @@ char *trace_series_label(const scenario *s, int index, bool joined);
 // The same without words.
 char *trace_series_symbol(const scenario *s, int index);
 
-// Model, links, drive, method and what is shaded in one line; of several runs, which of
-// them the shading and the marks belong to.
+// The vertical axis of a panel, named after its first signal, whose symbol names the
+// body; that of residuals of a signal.
+figure_axis trace_signal_axis(const trace_figure *t, const trace_panel *from);
+void trace_residual_axis(figure_panel *panel, int index);
+
+// Model, links, drive and method as far as all runs share them, in one line without a
+// full stop, in lower case.
+char *trace_shared(const trace_run *runs, int run_count);
+
+// Adds the version and, of each run that failed, why.
+void trace_add_ending(GString *out, const trace_run *runs, int run_count);
+
+// What the first run is and what is shaded in one line; of several runs, which of them
+// the shading and the marks belong to.
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 
 // --- what happened: trace_series.c

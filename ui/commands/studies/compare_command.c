@@ -266,7 +266,7 @@ static bool have_same_changes(const comparison *c, char changes[SCENARIO_CHANGES
     return true;
 }
 
-// The recorded signals of all scenarios in one figure, a colour each.
+// The recorded signals of all scenarios in one figure, a colour and a dash each.
 static int plot_comparison(const arguments *a, const void *found)
 {
     const comparison *c = found;
@@ -285,7 +285,7 @@ static int plot_comparison(const arguments *a, const void *found)
     if (!same) {
         common[0] = '\0';
     }
-    g_autofree char *title = text_printf("Runs compared%s", common);
+    g_autofree char *title = text_printf("Comparison of %d runs%s", c->opened, common);
     g_auto(GStrv) names = g_new0(char *, TRACE_RUNS + 1);
     for (int i = 0; i < c->opened; i++) {
         char changes[SCENARIO_CHANGES] = "";
@@ -300,8 +300,9 @@ static int plot_comparison(const arguments *a, const void *found)
     int count = 0;
     for (int i = 0; i < c->opened; i++) {
         if (c->kept[i].summary.steps > 0) {
-            shown[count++] = (trace_run){&c->scenarios[i], &c->kept[i], .name = names[i],
-                                         .rank = i + 1};
+            shown[count] = (trace_run){&c->scenarios[i], &c->kept[i], .name = names[i],
+                                       .rank = count + 1};
+            count++;
         }
     }
     return publish_runs(a, title, shown, count);
@@ -385,8 +386,11 @@ const command compare_command = {
         "no controller\n"
         "takes less than for that. --set holds for all of them; --vary, as sweep takes "
         "it, runs each of\n"
-        "them for every combination of values. ^C ends it with the rows that are done "
-        "(exit status 130).\n",
+        "them for every combination of values. --plot gives each signal a panel and each "
+        "run a colour\n"
+        "and a dash; more than four runs have a row of panels each. ^C ends it with the "
+        "rows that are\n"
+        "done (exit status 130).\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options},
     .run = compare_and_report,
