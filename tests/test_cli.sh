@@ -39,6 +39,41 @@ for command in list show check run tables figures animate predict modes sweep co
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
 done
+# no command lists an option that it always refuses: only runs have recorded signals
+for command in modes predict converge study sweep identify robust linear tune plot; do
+    expect 0 $command --help
+    ! grep -qE -- '--(signals|overlay)' out || fail "$command --help lists options that it refuses"
+done
+for command in run compare figures; do
+    expect 0 $command --help
+    says out '--signals A,B+C'
+done
+
+# list, show and check in few words
+expect 0 list -q
+grep -qx corrected/first-impact out || fail "list -q has no name alone"
+expect 0 check -q hit.yaml
+silent out
+expect 0 show -q hit.yaml --set wall.angle=0.2
+[ "$(sed 's/ *=.*//' out | paste -s -d ' ')" = 'motor.voltage wall.angle run.duration' ] ||
+    fail "show -q prints $(cat out)"
+# the columns of show stand below their headings, whatever stands in them
+expect 0 show hit.yaml
+column=$(grep -ob 'range   ' <(grep '^parameter ' out) | cut -d: -f1)
+[ -z "$(sed -n '/^arm\./p' out | cut -c"$column" | tr -d ' ')" ] || fail "show's columns do not line up"
+meaning=$(grep -ob 'meaning' <(grep '^parameter ' out) | cut -d: -f1)
+grep -qE "^ {$meaning}control law on the rig" out || fail "a long range moves its meaning"
+
+# a scenario instead of a command opens the lab on it
+expect 0 compare/hybrid --size 80x24
+says out 'impactlab  compare/hybrid'
+expect 0 ./hit.yaml --size 80x24
+says out 'Hit'
+expect 2 compare/hybird --size 80x24
+says err "did you mean 'compare/hybrid'"
+expect 2 hybird
+says err 'there is no command'
+
 # the chapters of the manual have what the tables have
 expect 0 show corrected/first-impact
 sed -n 's/^\([a-z]*\.[A-Za-z0-9_]*\) .*/\1/p' out | sort >shown

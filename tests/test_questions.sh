@@ -12,7 +12,7 @@ asked=0
 # the first three hits, as the list of answers names them
 hits() {
     sed -nE 's/^(README\.md|docs[^,]*), "(.*)"$/\1: \2/p
-        s/^((parameter|quantity|signal) [^ ]+)( \[.*\])?$/\1/p
+        s/^((parameter|quantity|signal|law) [^ ]+)( \[.*\])?$/\1/p
         s/^(impactlab [a-z]+)$/\1/p' out | head -n 3
 }
 
@@ -43,9 +43,15 @@ says err "parameter arm.k2 [N m/rad]"
 expect 2 show nonesuch
 ! grep -q 'may mean' err || fail "nonesuch has a meaning"
 
-# what nothing is known of
+# what nothing is known of, one word or several, and what little is known of
 expect 2 help blurp splodge
-says err "nothing is known"
+says err "no passage says 'blurp splodge'"
+expect 2 help xylophone
+says err "no passage says 'xylophone'"
 expect 2 help rnu
 says err "did you mean 'run'"
+expect 0 help pneumatic bellows valve pressure of the wall
+says out "no passage says it"
+expect 0 help where does the wall stand
+! grep -q "no passage" out || fail "nothing is said of walls"
 nothing_failed

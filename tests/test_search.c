@@ -58,6 +58,23 @@ TEST(corrects_misspelt_words)
     assert_int_equal(best("zzzz"), -1);
 }
 
+TEST(knows_synonyms)
+{
+    assert_int_equal(best("obstacles"), 0);
+    assert_int_equal(best("a rod"), 1);
+}
+
+// A hit has the share of the question's words that it has, in which little words are not.
+TEST(tells_what_share_of_a_question_is_found)
+{
+    search_hit hit;
+    assert_int_equal(search_find(&source, 1, "what is a soft wall", &hit, 1), 1);
+    check_close(hit.share, 1, 1e-12);
+    assert_int_equal(search_find(&source, 1, "soft zeppelin", &hit, 1), 1);
+    check_close(hit.share, 0.5, 1e-12);
+    assert_int_equal(search_find(&source, 1, "what is a zeppelin", &hit, 1), 0);
+}
+
 TEST(keeps_the_best_in_order)
 {
     search_hit hits[4];

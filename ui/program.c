@@ -90,6 +90,28 @@ static int run_without_arguments(void)
     return print_welcome();
 }
 
+// A fault_handler for faults that are told elsewhere.
+static void ignore_fault(void *context, const char *sentence)
+{
+    (void)context;
+    (void)sentence;
+}
+
+// Whether a word that is no command is a scenario: written as a path, or the name of one
+// without faults.
+static bool names_scenario(const char *word)
+{
+    scenario s;
+    if (strpbrk(word, "/.") != NULL) {
+        return true;
+    }
+    if (scenario_open(&s, word, ignore_fault, NULL) != STATUS_OK) {
+        return false;
+    }
+    scenario_finish(&s);
+    return true;
+}
+
 // Runs the command that argv asks for. Returns the exit status.
 static int dispatch(int argc, char **argv)
 {
@@ -115,6 +137,11 @@ static int dispatch(int argc, char **argv)
     const command *found = command_find(&command_table, word);
     if (found != NULL) {
         return call_command(found, argc - 1, argv + 1);
+    }
+
+    // the lab on a scenario
+    if (names_scenario(word)) {
+        return call_command(&lab_command, argc, argv);
     }
     return complain_command(&command_table, word);
 }

@@ -5,12 +5,16 @@
 
 #include "src/base/shipped.h"
 #include "src/base/text_stream.h"
+#include "src/tables/control_laws.h"
 #include "src/tables/parameters.h"
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
 #include "ui/manual/search.h"
 
 enum { MOST_ANSWERS = 6, MOST_MEANINGS = 8 };
+
+// Hits that have less of a question than this do not answer it.
+static const double LEAST_SHARE = 0.5;
 enum { LINE_WIDTH = 100, INDENT = 4, PASSAGE_BYTES = 330 };
 
 // --- what there is to be found ---------------------------------------------------------
@@ -52,6 +56,20 @@ static search_entry signal_entry(const void *context, int i)
     return (search_entry){signal_table[i].name, "signal", texts, 1};
 }
 
+static search_entry law_entry(const void *context, int i)
+{
+    (void)context;
+    static const char *texts[3];
+    const control_law_info *law = &control_law_table[i];
+    int count = 0;
+    texts[count++] = law->description;
+    if (law->needs != NULL) {
+        texts[count++] = law->needs;
+        texts[count++] = law->fails;
+    }
+    return (search_entry){law->word, "law", texts, count};
+}
+
 // A command with its summary, its help and what its own options do. The context is the
 // list of all.
 static search_entry command_entry(const void *context, int i)
@@ -66,7 +84,8 @@ static search_entry command_entry(const void *context, int i)
     // options that only some commands have say what they are for
     for (int t = 0; c->options[t] != NULL; t++) {
         const option_table *table = c->options[t];
-        if (table == &page_options || table == &view_options) {
+        if (table == &page_options || table == &signal_options ||
+            table == &view_options) {
             continue; // every picture has these
         }
         for (int k = 0; k < table->count && count < TEXTS; k++) {
@@ -76,7 +95,7 @@ static search_entry command_entry(const void *context, int i)
     return (search_entry){c->name, "command", texts, count};
 }
 
-enum { SECTIONS, PARAMETERS, QUANTITIES, SIGNALS, COMMANDS, SOURCES };
+enum { SECTIONS, PARAMETERS, QUANTITIES, SIGNALS, LAWS, COMMANDS, SOURCES };
 
 static void list_sources(const command_list *all, search_source sources[SOURCES])
 {
@@ -84,6 +103,7 @@ static void list_sources(const command_list *all, search_source sources[SOURCES]
     sources[PARAMETERS] = (search_source){parameter_count, parameter_entry};
     sources[QUANTITIES] = (search_source){summary_count, quantity_entry};
     sources[SIGNALS] = (search_source){signal_count, signal_entry};
+    sources[LAWS] = (search_source){LAW_COUNT, law_entry};
     sources[COMMANDS] = (search_source){all->count, command_entry, all};
 }
 
@@ -128,6 +148,7 @@ static const struct {
                     " draws it"},
     [SIGNALS] = {"impactlab run SCENARIO --csv FILE has it, --plot FILE --signals ",
                  " draws it"},
+    [LAWS] = {"--set control.law=", " takes it, docs/reference/laws.md compares all"},
     [COMMANDS] = {"impactlab ", " --help"},
 };
 
@@ -174,6 +195,9 @@ int print_answers(FILE *stream, const command_list *all, const char *question)
     search_hit hits[MOST_ANSWERS];
     list_sources(all, sources);
     const int count = search_find(sources, SOURCES, question, hits, MOST_ANSWERS);
+    if (count > 0 && hits[0].share < LEAST_SHARE) {
+        fprintf(stream, "no passage says it; these have some of its words\n");
+    }
     for (int i = 0; i < count; i++) {
         print_answer(stream, sources, &hits[i]);
     }

@@ -6,7 +6,8 @@
 #include "ui/commands/command.h"
 
 // Prints what answers a question best: each hit with the passage that fits, and where to
-// read on. Returns how many hits there are; prints nothing if there are none.
+// read on; says so if the best has less than half of the question. Returns how many hits
+// there are; prints nothing if there are none.
 int print_answers(FILE *stream, const command_list *all, const char *question);
 
 // Prints what has all of these words in its name: parameters, quantities, signals,

@@ -99,6 +99,6 @@ const command check_command = {
     .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what was "
             "expected. A value that has\n"
             "no effect is warned of by FILE:LINE, and is no fault (exit status 0).\n",
-    .options = {&json_options},
+    .options = {&json_options, &quiet_options},
     .run = check_files,
 };

@@ -20,14 +20,20 @@ const command *command_find(const command_list *all, const char *name)
     return NULL;
 }
 
-int complain_command(const command_list *all, const char *name)
+const char *command_nearest(const command_list *all, const char *name)
 {
     nearest_word near = nearest_begin(name);
     for (int i = 0; i < all->count; i++) {
         nearest_try(&near, all->items[i]->name);
     }
-    if (near.best != NULL) {
-        return complain("there is no command '%s', did you mean '%s'?", name, near.best);
+    return near.best;
+}
+
+int complain_command(const command_list *all, const char *name)
+{
+    const char *near = command_nearest(all, name);
+    if (near != NULL) {
+        return complain("there is no command '%s', did you mean '%s'?", name, near);
     }
 
     // where none is near, all of them are named

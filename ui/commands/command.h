@@ -56,6 +56,9 @@ struct command_list {
 // The command of that name, NULL if there is none.
 const command *command_find(const command_list *all, const char *name);
 
+// The command whose name is most similar to a misspelt one, NULL if none is similar.
+const char *command_nearest(const command_list *all, const char *name);
+
 // Reports that there is no such command and names the most similar one. Returns
 // EXIT_BAD_ARGUMENTS.
 int complain_command(const command_list *all, const char *name);

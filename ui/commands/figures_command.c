@@ -301,6 +301,7 @@ const command figures_command = {
         "how near they\n"
         "come out; beta-gamma: the map of Newmark's parameters.\n",
     .operand_word = figure_word,
-    .options = {&json_options, OWN_OPTIONS(figures_rows), &quiet_options, &page_options},
+    .options = {&json_options, OWN_OPTIONS(figures_rows), &quiet_options, &page_options,
+                &signal_options},
     .run = draw_thesis_figures,
 };

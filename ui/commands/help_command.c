@@ -67,12 +67,14 @@ static int answer_question(const arguments *a)
         return EXIT_DONE;
     }
 
-    const bool is_one_word = a->operand_count == 1 && strchr(question, ' ') == NULL;
-    if (is_one_word) {
-        return complain_command(a->commands, question);
+    // a misspelt command, perhaps
+    const char *near = command_nearest(a->commands, question);
+    if (near != NULL) {
+        return complain("no passage says '%s', did you mean '%s'?", question, near);
     }
-    return complain("nothing is known of these words, expected some that the manual, a "
-                    "parameter, a quantity or a command has");
+    return complain("no passage says '%s', expected words that the manual, a parameter, "
+                    "a quantity, a law or a command has",
+                    question);
 }
 
 // The command: writes what is asked for, by default the list of commands.

@@ -57,10 +57,18 @@ static int list_scenarios(const arguments *a)
 
     const int width = longest_name(&l);
     for (int i = 0; i < l.count; i++) {
-        result = worse(result, list_scenario(&l, l.names[i], width));
+        if (a->quiet && l.entries == NULL) {
+            say("%s\n", l.names[i]);
+        } else {
+            result = worse(result, list_scenario(&l, l.names[i], width));
+        }
     }
     return scenario_listing_close(&l, a, result);
 }
+
+static const option_row rows[] = {
+    OPTION(FLAG, "quiet", NULL, "print the names alone", PLACE(quiet), .letter = 'q'),
+};
 
 const command list_command = {
     .name = "list",
@@ -68,6 +76,6 @@ const command list_command = {
     .summary = "Name and title of every scenario",
     .operands = "",
     .help = "",
-    .options = {&json_options},
+    .options = {&json_options, OWN_OPTIONS(rows)},
     .run = list_scenarios,
 };

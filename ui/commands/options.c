@@ -66,10 +66,6 @@ static const option_row page_rows[] = {
     OPTION(FLAG, "transparent", NULL, "without a ground", PLACE(transparent)),
     OPTION(NUMBER, "dpi", "N", "resolution of a PNG (200)", PLACE(dpi), .low = 30,
            .high = 1200),
-    OPTION(FILE, "overlay", "FILE.csv[:COLUMN][@SHIFT]",
-           "points of measured data over recorded signals", PLACE(overlay)),
-    OPTION(TEXT, "signals", "A,B+C", "recorded signals to show: panels, joined by +",
-           PLACE(signals)),
     OPTION(NUMBER, "from", "X", "where the horizontal axis begins", PLACE(from),
            .low = -1e9, .high = 1e9, .initial = (double)NAN),
     OPTION(NUMBER, "to", "X", "where it ends", PLACE(to), .low = -1e9, .high = 1e9,
@@ -80,6 +76,14 @@ static const option_row page_rows[] = {
     OPTION(FLAG, "dark", NULL, "the same as --theme dark", PLACE(dark)),
 };
 const option_table page_options = OPTION_TABLE("Pictures", page_rows);
+
+static const option_row signal_rows[] = {
+    OPTION(TEXT, "signals", "A,B+C", "recorded signals to show: panels, joined by +",
+           PLACE(signals)),
+    OPTION(FILE, "overlay", "FILE.csv[:COLUMN][@SHIFT]",
+           "points of measured data over recorded signals", PLACE(overlay)),
+};
+const option_table signal_options = OPTION_TABLE("Pictures", signal_rows);
 
 // --- values ----------------------------------------------------------------------------
 

@@ -91,15 +91,16 @@ typedef struct option_table {
     OPTION(kind, "output", of, __VA_ARGS__, PLACE(output), .letter = 'o')
 
 // Tables that several commands share.
-extern const option_table set_options;   // --set
-extern const option_table vary_options;  // --vary
-extern const option_table json_options;  // --json
-extern const option_table quiet_options; // --quiet
-extern const option_table lab_options;   // of what opens the lab
-extern const option_table drawn_options; // --plot of a study
-extern const option_table help_options;  // --help, which every command has
-extern const option_table page_options;  // --width, --theme, --font ... of every picture
-extern const option_table view_options;  // --gl, --camera, --size
+extern const option_table set_options;    // --set
+extern const option_table vary_options;   // --vary
+extern const option_table json_options;   // --json
+extern const option_table quiet_options;  // --quiet
+extern const option_table lab_options;    // of what opens the lab
+extern const option_table drawn_options;  // --plot of a study
+extern const option_table help_options;   // --help, which every command has
+extern const option_table page_options;   // --width, --theme, --font ... of every picture
+extern const option_table signal_options; // --signals, --overlay of pictures of runs
+extern const option_table view_options;   // --gl, --camera, --size
 
 // --- values ----------------------------------------------------------------------------
 

@@ -67,12 +67,6 @@ static int plot_recipe(const arguments *a)
     if (ended != EXIT_DONE) {
         return ended;
     }
-    if (o.overlay != NULL || o.signals != NULL) {
-        const char *option = o.overlay != NULL ? "overlay" : "signals";
-        return complain(
-            "a recipe says itself which signals and data it shows, --%s is for runs",
-            option);
-    }
 
     // where the picture goes
     g_autofree char *path = g_strdup(a->plot);

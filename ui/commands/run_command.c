@@ -365,6 +365,6 @@ const command run_command = {
         "The scene shows the arm at every --at, or from the start to the peak force of "
         "the first pulse.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
-                &page_options, &view_options},
+                &page_options, &signal_options, &view_options},
     .run = check_and_run,
 };

@@ -1,6 +1,7 @@
 // impactlab show: the resolved parameters of a scenario, its script and what it expects.
 #include "ui/commands/command.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/json.h"
@@ -23,21 +24,51 @@ typedef struct shown_parameter {
     const char *value, *unit, *range, *description;
 } shown_parameter;
 
-static void print_parameter(const shown_parameter *p)
+// Widths of the table's columns, and where each but the last ends.
+enum { PATH_WIDTH = 33, VALUE_WIDTH = 20, UNIT_WIDTH = 9, RANGE_WIDTH = 32 };
+enum {
+    VALUE_END = PATH_WIDTH + 3 + VALUE_WIDTH,
+    UNIT_END = VALUE_END + 1 + UNIT_WIDTH,
+    RANGE_END = UNIT_END + 2 + RANGE_WIDTH,
+};
+
+// A cell, to the left where its width is negative. The column ends at `end`; behind a
+// text that is longer the row goes on in the next line.
+static void print_aligned(const char *text, int width, int end)
 {
-    char mark = ' ';
-    if (p->is_given) {
-        mark = '=';
+    say("%*s", width, text);
+    if ((int)strlen(text) > abs(width)) {
+        say("\n%*s", end, "");
     }
-    say("%-33s %c %18s %-9s  %-29s  %s\n", p->path, mark, p->value, p->unit, p->range,
-        p->description);
+}
+
+static void print_parameter_row(const char *mark, const shown_parameter *p)
+{
+    say("%-*s %s ", PATH_WIDTH, p->path, mark);
+    print_aligned(p->value, VALUE_WIDTH, VALUE_END);
+    say(" ");
+    print_aligned(p->unit, -UNIT_WIDTH, UNIT_END);
+    say("  ");
+    print_aligned(p->range, -RANGE_WIDTH, RANGE_END);
+    say("  %s\n", p->description);
+}
+
+// Prints a parameter, or with --quiet only one that was given.
+static void print_parameter(const arguments *a, const shown_parameter *p)
+{
+    if (p->is_given) {
+        print_parameter_row("=", p);
+    } else if (!a->quiet) {
+        print_parameter_row(" ", p);
+    }
 }
 
 // --- numbers of the control law --------------------------------------------------------
 
 // The i-th number of a law, under control.settings. One that is a parameter of its own
 // stands in the table instead, unless the settings give it.
-static void print_law_setting(const scenario *s, const controller *law, int i)
+static void print_law_setting(const arguments *a, const scenario *s,
+                              const controller *law, int i)
 {
     const controller_parameter number = controller_parameter_at(law, i);
     char path[PARAMETER_TEXT_SIZE], value[NUMBER_TEXT], range[64];
@@ -53,55 +84,61 @@ static void print_law_setting(const scenario *s, const controller *law, int i)
     snprintf(path, sizeof path, "control.settings.%s", number.name);
     number_format_short(value, shown);
     snprintf(range, sizeof range, "%g to %g", number.minimum, number.maximum);
-    print_parameter(&(shown_parameter){path, is_given, value, number.unit, range,
-                                       number.description});
+    print_parameter(a, &(shown_parameter){path, is_given, value, number.unit, range,
+                                          number.description});
 }
 
 // The settings as they were given: all that is known of a controller that is loaded when
 // the run starts.
-static void print_given_settings(const scenario *s)
+static void print_given_settings(const arguments *a, const scenario *s)
 {
     const char *rest = s->parameters.control.settings;
     setting given;
     while (settings_next(&rest, &given)) {
         char path[2 * PARAMETER_TEXT_SIZE];
         snprintf(path, sizeof path, "control.settings.%s", given.name);
-        print_parameter(&(shown_parameter){path, true, given.value, "", "",
-                                           setting_info.description});
+        print_parameter(a, &(shown_parameter){path, true, given.value, "", "",
+                                              setting_info.description});
     }
 }
 
 // The numbers of the control law, below the text of control.settings.
-static void print_settings(const scenario *s)
+static void print_settings(const arguments *a, const scenario *s)
 {
     const controller *law = controller_of(s->parameters.control.law);
     if (law == NULL) {
-        print_given_settings(s);
+        print_given_settings(a, s);
         return;
     }
     for (int i = 0; i < law->parameter_count; i++) {
-        print_law_setting(s, law, i);
+        print_law_setting(a, s, law, i);
     }
 }
 
 // --- the scenario ----------------------------------------------------------------------
 
 // The table of all parameters, with those of control.settings where that stands.
-static void print_parameters(const scenario *s)
+static void print_parameters(const arguments *a, const scenario *s)
 {
-    printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n",
-           "parameter", "value", "unit", "range");
+    if (!a->quiet) {
+        printf("\n= was given, all else is a default\n\n");
+        print_parameter_row(" ", &(shown_parameter){.path = "parameter",
+                                                    .value = "value",
+                                                    .unit = "unit",
+                                                    .range = "range",
+                                                    .description = "meaning"});
+    }
 
     // the settings follow the text in which they are given
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         char value[128], range[RANGE_TEXT];
         parameter_format(&s->parameters, i, value, sizeof value);
-        print_parameter(&(shown_parameter){info->path, s->parameters.set[i], value,
-                                           info->unit, format_range(info, "|", range),
-                                           info->description});
+        print_parameter(a, &(shown_parameter){info->path, s->parameters.set[i], value,
+                                              info->unit, format_range(info, "|", range),
+                                              info->description});
         if (i == PARAMETER_INDEX(control.settings)) {
-            print_settings(s);
+            print_settings(a, s);
         }
     }
 }
@@ -159,10 +196,12 @@ static int show_scenario(const arguments *a, scenario *s)
         return write_json_file(a->json, scenario_json(s));
     }
 
-    say_title(s);
-    print_indented(stdout, s->description, (int)strlen(s->description), DESCRIPTION_WIDTH,
-                   0);
-    print_parameters(s);
+    if (!a->quiet) {
+        say_title(s);
+        print_indented(stdout, s->description, (int)strlen(s->description),
+                       DESCRIPTION_WIDTH, 0);
+    }
+    print_parameters(a, s);
 
     // what else it has
     if (s->action_count > 0) {
@@ -186,6 +225,11 @@ static int show_or_explain(const arguments *a)
     return result;
 }
 
+static const option_row rows[] = {
+    OPTION(FLAG, "quiet", NULL, "print only what was given, without title and defaults",
+           PLACE(quiet), .letter = 'q'),
+};
+
 const command show_command = {
     .name = "show",
     .group = GROUP_ONE_RUN,
@@ -196,6 +240,6 @@ const command show_command = {
     .takes_scenarios = true,
     .help = "A parameter marked with = was given by the scenario or by --set, the others "
             "have their defaults.\n",
-    .options = {&set_options, &json_options},
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows)},
     .run = show_or_explain,
 };

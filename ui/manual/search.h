@@ -27,12 +27,14 @@ static inline search_entry search_entry_of(const search_source *source, int inde
 typedef struct search_hit {
     int source, index; // which it is
     int text; // the paragraph that fits best, the first where only the title does
+    double
+        share; // of the question that the thing has, from 0 to 1: rare words weigh more
 } search_hit;
 
 // Finds what fits a question, the best first: at most `most` hits; returns how many.
-// Words are compared without their usual endings, misspelt ones are corrected; words such
-// as "how" and "the" do not count beside others. Without memory a loss is noted
-// (text_stream.h).
+// Words are compared without their usual endings, misspelt ones are corrected, synonyms
+// (synonyms.h) found, too; words such as "how" and "the" do not count beside others.
+// Without memory a loss is noted (text_stream.h).
 int search_find(const search_source *sources, int source_count, const char *question,
                 search_hit *hits, int most);
 

@@ -392,6 +392,6 @@ const command compare_command = {
         "rows that are\n"
         "done (exit status 130).\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
-                &quiet_options, &page_options},
+                &quiet_options, &page_options, &signal_options},
     .run = compare_and_report,
 };
