@@ -269,4 +269,16 @@ TEST(a_study_runs_each_method_at_each_step_once)
         }
     }
     assert_true(compared > 2 * STUDY_METHODS);
+
+    // nothing is resolved below what the methods that are not the reference's reach
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        double least = HUGE_VAL;
+        for (int m = 0; m < STUDY_METHODS; m++) {
+            for (int i = 0; i < STUDY_STEPS && strcmp(study_methods[m], "event") != 0;
+                 i++) {
+                least = fmin(least, both.study.points[m][i].error[k]);
+            }
+        }
+        check_close(fmin(HUGE_VAL, both.study.resolved[k]), least, 0);
+    }
 }

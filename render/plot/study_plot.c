@@ -7,7 +7,8 @@
 #include "render/page/text.h"
 #include "src/base/shipped.h"
 
-#define PANEL_WEIGHT 2.4 // of its height
+#define PANEL_WEIGHT    2.4 // of its height
+#define RESIDUAL_RADIUS 1.0 // of a point [pt]
 
 // ==== robust: the distribution of the overshoot
 
@@ -118,8 +119,9 @@ static const double *add_channel(owned_figure *o, int panel, const recorded_trac
     owned_figure_add(o, panel,
                      (figure_series){signal->name, signal->symbol, x, y, count,
                                      .colour = palette_slot(channel),
-                                     .marker = MARKER_CIRCLE, .radius = 0.5,
-                                     .no_line = true});
+                                     .marker = MARKER_CIRCLE + channel % 4,
+
+                                     .radius = RESIDUAL_RADIUS, .no_line = true});
     return residual;
 }
 
@@ -145,11 +147,27 @@ owned_figure *identify_figure_create(const identification *id)
 
         // behind a trace's channels stand those of its contacts, which are not drawn
         residual += t->contact_count;
-        panel->heading = owned_figure_keep(o, g_markup_escape_text(t->file, -1));
-        panel->y = (figure_axis){"residual", "Residual over its deviation",
-                                 .symbol = "r/σ", .room = 0.05};
+        g_autofree char *name = g_path_get_basename(t->file);
+        panel->heading = owned_figure_keep(o, text_escape(name));
+        panel->y = (figure_axis){"residual", "Residual <i>r</i>/<i>σ</i>",
+                                 .symbol = "<i>r</i>/<i>σ</i>", .room = 0.05};
     }
 
+    // one legend where all have the first one's channels
+    o->figure.common_legend = true;
+    for (int k = 1; k < id->trace_count; k++) {
+        for (int c = 0; c < CHANNELS; c++) {
+            const bool there = id->traces[k].reading[c] != NULL;
+            if (there != (id->traces[0].reading[c] != NULL)) {
+                o->figure.common_legend = false;
+            }
+        }
+    }
+    o->figure.caption = owned_figure_printf(
+        o,
+        "<i>r</i>: reading less what the fitted arm gives. <i>σ</i>: standard deviation "
+        "of the reading, by the noise and the steps of its sensor. impactlab %s.",
+        lab_version());
     o->figure.x =
         (figure_axis){.name = "time", .label = "Time", .symbol = "t", .unit = "s"};
     return o;

@@ -170,6 +170,9 @@ static void prepare_points(method_study *study)
 {
     static const double mantissas[] = {10, 5, 2};
     const double unknown = (double)NAN;
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        study->resolved[k] = unknown;
+    }
     for (int m = 0; m < STUDY_METHODS; m++) {
         double per_second = 1000; // the decade's unit of time: 1 ms, 0.1 ms and so on
         for (int i = 0; i < STUDY_STEPS; i++) {
@@ -208,6 +211,10 @@ status method_study_compute(const scenario *s, run_monitor *monitor, method_stud
                 return fault_set(f, code, "%s", status_text(code));
             }
             run_monitor_count(monitor);
+            for (int k = 0; k < STUDY_QUANTITIES && method_kinds[m] != METHOD_EVENT;
+                 k++) {
+                study->resolved[k] = fmin(study->resolved[k], point->error[k]);
+            }
         }
     }
     return STATUS_OK;

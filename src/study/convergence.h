@@ -52,6 +52,9 @@ typedef struct study_point {
 typedef struct method_study {
     double reference_step;              // of the event method [s]
     double reference[STUDY_QUANTITIES]; // its values
+    // the least error of a method that is not the reference's: nothing confirms the
+    // reference to less; NaN before one was run
+    double resolved[STUDY_QUANTITIES];
     study_point points[STUDY_METHODS][STUDY_STEPS];
 } method_study;
 

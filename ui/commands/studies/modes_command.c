@@ -148,6 +148,7 @@ static void compute_deflections(const arm *a, const double *shape, double *x, do
 typedef struct modes_panel {
     figure_series series[MODES_DRAWN];
     char labels[MODES_DRAWN][48], heading[64];
+    figure_note note;
 } modes_panel;
 
 // Fills a panel with the first modes of a set; `numbers` has room for the points of each.
@@ -185,6 +186,18 @@ static figure_panel modes_panel_of(modes_panel *p, const arm *a, const mode_set 
                           .series_count = drawn};
     if (drawn == 0) {
         panel.remark = "nothing can move";
+    } else if (drawn == 1) {
+        // without a legend the curve's farthest point tells the frequency
+        size_t farthest = 0;
+        for (size_t i = 1; i < points; i++) {
+            if (fabs(p->series[0].y[i]) > fabs(p->series[0].y[farthest])) {
+                farthest = i;
+            }
+        }
+        p->note = (figure_note){p->series[0].x[farthest], p->series[0].y[farthest],
+                                p->labels[0]};
+        panel.notes = &p->note;
+        panel.note_count = 1;
     }
     return panel;
 }
