@@ -385,6 +385,8 @@ for other in json latex; do
     expect 2 run hit.yaml --plot alone.svg --bare --$other alone.txt
     says err "two results cannot both be written to alone.txt"
 done
+expect 2 run hit.yaml --plot alone.svg --latex alone.tex --json alone.pdf
+says err "two results cannot both be written to alone.pdf"
 expect 2 linear compare/hybrid --law --plot alone.svg --nyquist alone.pdf
 says err "differ in more than their ending"
 expect 2 linear compare/hybrid --law --plot alone.svg --nyquist plane.svg --latex alone.tex
@@ -395,7 +397,7 @@ expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --csv beside.csv --plot besid
 [ "$(wc -l <beside.csv)" = 3 ] || fail "a sweep's rows gave way to the numbers of its picture"
 expect 1 linear hit.yaml --plot beside.svg --bare --latex beside.tex
 says err "'beside.csv' holds other numbers and is kept"
-[ -s beside.txt ] && [ -s beside.tex ] || fail "a CSV that is kept hindered the caption or LaTeX"
+[ -s beside.txt ] && [ -s beside.tex ] && [ -s beside.pdf ] || fail "a CSV that is kept hindered the caption or LaTeX"
 [ "$(wc -l <beside.csv)" = 3 ] || fail "the numbers of a picture replaced a sweep's rows"
 rm beside.csv
 expect 0 linear hit.yaml --plot beside.svg
@@ -406,7 +408,7 @@ expect 1 figures 3.4 2.2 -o drawn --format svg,pdf --latex drawn.tex --json draw
 says err "'drawn/fig-3-4.csv' holds other numbers and is kept"
 ls drawn | tr '\n' ' ' >listed
 says listed "fig-2-2.csv fig-2-2.pdf fig-2-2.svg fig-3-4.csv fig-3-4.pdf fig-3-4.svg"
-[ "$(grep -c includegraphics drawn.tex)" = 2 ] || fail "a CSV that is kept hindered LaTeX"
+[ "$(grep -c 'includegraphics.*{drawn/.*pdf}' drawn.tex)" = 2 ] || fail "a CSV that is kept hindered LaTeX"
 expect 2 figures 2.1 --format ""
 says err "there is no figure format ''"
 

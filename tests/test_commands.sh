@@ -223,6 +223,7 @@ says out "map.png"
 # --- the environments of figures stand in one file, one for each
 expect 0 figures 3.4 3.5 -o pictures --format svg --latex all.tex
 [ "$(grep -c 'begin{figure}' all.tex)" = 2 ] || fail "all.tex has not two figures"
+[ -s pictures/fig-3-4.pdf ] && grep -q '{pictures/fig-3-5.pdf}' all.tex || fail "LaTeX gets pictures that it cannot read"
 
 # --- whatever draws or heads a run says what was changed of the scenario: what --help lists with
 # --set, each with what it needs besides; a command that is new has to be added here

@@ -71,6 +71,17 @@ TEST(latex_sets_the_figure)
     assert_int_equal(depth, 0);
 }
 
+// \includegraphics reads PDF and PNG, no SVG.
+TEST(latex_gets_a_picture_that_it_can_read)
+{
+    publish(&(figure_options){.look.width = 85, .latex = "drawn.tex"}, "drawn.svg");
+    assert_true(file_has("drawn.tex", "{drawn.pdf}"));
+    assert_true(file_has("drawn.pdf", "%PDF-"));
+    publish(&(figure_options){.latex = "image.tex"}, "image.png");
+    assert_true(file_has("image.tex", "{image.png}"));
+    assert_int_not_equal(access("image.pdf", F_OK), 0);
+}
+
 TEST(files_know_the_command_and_tell_what_they_show)
 {
     const figure_options o = {.command = "impactlab run x --set arm.k2=3"};

@@ -276,7 +276,7 @@ static char *latex_escape(const char *plain)
 }
 
 // The environment of a picture with its caption, as LaTeX text.
-char *latex_environment(const artwork *a, const char *tex, const char *file)
+static char *latex_environment(const artwork *a, const char *tex, const char *file)
 {
     g_autofree char *tex_folder = g_path_get_dirname(tex),
                     *folder = g_path_get_dirname(file);
@@ -359,6 +359,27 @@ static status write_caption(const artwork *a, const char *path, fault *f)
     return write_text_file(file, text, f);
 }
 
+char *latex_picture(const char *path)
+{
+    if (picture_format_of(path) == FORMAT_SVG) {
+        return artwork_beside(path, ".pdf");
+    }
+    return g_strdup(path);
+}
+
+// A PDF where the picture itself is an SVG.
+status artwork_publish_latex(const artwork *a, const figure_options *o, const char *path,
+                             char **environment, fault *f)
+{
+    g_autofree char *read = latex_picture(path);
+    if (strcmp(read, path) != 0) {
+        const picture p = artwork_picture(a, o);
+        TRY(picture_write(&p, read, f));
+    }
+    *environment = latex_environment(a, o->latex, read);
+    return STATUS_OK;
+}
+
 // The picture, and beside it whatever the options ask for.
 status artwork_publish(const artwork *a, const figure_options *o, const char *path,
                        bool with_csv, fault *f)
@@ -373,7 +394,8 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 
     // for LaTeX, and as numbers
     if (o->latex != NULL) {
-        g_autofree char *text = latex_environment(a, o->latex, path);
+        g_autofree char *text = NULL;
+        TRY(artwork_publish_latex(a, o, path, &text, f));
         TRY(write_text_file(o->latex, text, f));
     }
     if (with_csv) {

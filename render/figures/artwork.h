@@ -81,7 +81,13 @@ status artwork_publish_csv(const artwork *a, const char *path, fault *f);
 // Sets the ends of a figure's horizontal axis to --from and --to.
 void figure_take_range(figure *fig, const figure_options *o);
 
-// A figure environment: the path of the picture relative to the folder of the .tex file,
+// The picture that LaTeX reads for the one at a path: of an SVG, which its
+// \includegraphics cannot read, the PDF beside it. Free with g_free.
+char *latex_picture(const char *path);
+
+// Writes that PDF where the picture at the path is an SVG, and makes the text of a figure
+// environment for o->latex: the path of the picture relative to the folder of that file,
 // its width, alternative text, caption and the label fig:NAME with the name of the
-// picture. Free with g_free.
-char *latex_environment(const artwork *a, const char *tex, const char *file);
+// picture. Free *environment with g_free.
+status artwork_publish_latex(const artwork *a, const figure_options *o, const char *path,
+                             char **environment, fault *f);

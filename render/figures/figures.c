@@ -188,16 +188,25 @@ status figure_draw(const char *id, const figure_options *o, const char *folder,
     TRY(figure_open(which, o, &drawn, f));
     FAULT_IF(stop_everything, f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
 
-    // caption and what LaTeX needs go with the first picture, numbers with them all
+    // the caption goes with the first picture, what LaTeX needs with the first one that
+    // it reads, numbers with them all
     figure_options beside = *o;
     beside.latex = NULL;
+    int of_latex = 0;
+    while (list[of_latex] != NULL && picture_format_of(list[of_latex]) == FORMAT_SVG) {
+        of_latex++;
+    }
+    if (list[of_latex] == NULL) {
+        of_latex = 0;
+    }
     TRY(make_folder(folder, f));
     for (int i = 0; list[i] != NULL; i++) {
         g_autofree char *path = text_printf("%s/%s.%s", folder, which->file, list[i]);
         beside.look.bare = o->look.bare && i == 0;
         TRY(artwork_publish(&drawn, &beside, path, false, f));
-        if (i == 0 && tex != NULL && o->latex != NULL) {
-            g_autofree char *text = latex_environment(&drawn, o->latex, path);
+        if (i == of_latex && tex != NULL && o->latex != NULL) {
+            g_autofree char *text = NULL;
+            TRY(artwork_publish_latex(&drawn, o, path, &text, f));
             fputs(text, tex);
         }
     }

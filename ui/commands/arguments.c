@@ -465,6 +465,14 @@ static int claim_results(const arguments *a)
             return complain("two results cannot both be written to %s", text);
         }
     }
+
+    // the PDF that LaTeX reads for an SVG
+    if (a->latex != NULL && a->plot != NULL) {
+        g_autofree char *read = latex_picture(a->plot);
+        if (strcmp(read, a->plot) != 0 && !result_places_add(read)) {
+            return complain("two results cannot both be written to %s", read);
+        }
+    }
     return EXIT_DONE;
 }
 

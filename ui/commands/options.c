@@ -71,7 +71,8 @@ static const option_row page_rows[] = {
     OPTION(NUMBER, "to", "X", "where it ends", PLACE(to), .low = -1e9, .high = 1e9,
            .initial = (double)NAN),
     OPTION(RESULT, "latex", "FILE.tex",
-           "write the figure environment with caption and label", PLACE(latex)),
+           "write the figure environment with caption and label, for an SVG with a PDF",
+           PLACE(latex)),
     OPTION(FLAG, "mono", NULL, "the same as --theme mono", PLACE(mono)),
     OPTION(FLAG, "dark", NULL, "the same as --theme dark", PLACE(dark)),
 };
