@@ -7,6 +7,7 @@
 #include "tests/plot_fixture.h"
 
 #include "render/plot/drawing.h"
+#include "render/plot/study_plot.h"
 #include "render/plot/run_style.h"
 #include "tests/colour_vision.h"
 
@@ -478,6 +479,87 @@ TEST(every_comparison_can_be_read)
         run_close(opened[i]);
     }
     assert_int_equal(complaints, 0);
+}
+
+enum { LOOP_POINTS = 2001, LOOPS = 3 };
+
+// Answers of a loop from 0.01 to 100 Hz: of three equal lags, of a resonance with a delay
+// as of force control, or of an integral part, which leaves the plane.
+static linear_response loop_of(int kind, double complex *block)
+{
+    linear_response r = {LOOP_POINTS, (double *)block, block + LOOP_POINTS};
+    for (int i = 0; i < LOOP_POINTS; i++) {
+        const double frequency = pow(10, -2 + 4.0 * i / (LOOP_POINTS - 1));
+        const double complex s = complex_of(0, frequency / 3.5), lag = 1 + s / 2;
+        const double late = -0.02 * frequency; // [rad]
+        r.frequency[i] = 2 * M_PI * frequency;
+        if (kind == 0) {
+            r.gain[i] = 4 / (lag * lag * lag);
+        } else if (kind == 1) {
+            r.gain[i] = 0.5 * (1 + 1.5 * s) / (1 + 0.2 * s + s * s) *
+                        complex_of(cos(late), sin(late));
+        } else {
+            r.gain[i] = (0.5 + 0.2 / s) / lag;
+        }
+    }
+    return r;
+}
+
+TEST(every_loop_can_be_read)
+{
+    static double complex block[2 * LOOP_POINTS];
+    const scenario s = {.name = (char *)"a loop"};
+    complaints = 0;
+    for (int kind = 0; kind < LOOPS; kind++) {
+        const linear_curve loop = {"loop gain", loop_of(kind, block)};
+        const linear_margins m = linear_margins_of(&loop.response);
+        for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
+            owned_figure *both[] = {nyquist_figure_create(&s, &loop.response, &m),
+                                    bode_figure_create(&s, &loop, 1, &m)};
+            for (int i = 0; i < 2; i++) {
+                both[i]->figure.width = widths[k];
+                SCOPED(artwork_finish) artwork drawn = artwork_of_owned(both[i]);
+                check_artwork(&drawn,
+                              formatted("%s of loop %d", i == 0 ? "plane" : "bode", kind),
+                              widths[k]);
+            }
+        }
+    }
+    assert_int_equal(complaints, 0);
+}
+
+// A line has one dash wherever it shows, though in one panel it turns too often for any.
+TEST(a_line_has_one_dash_in_all_panels)
+{
+    static double x[ROWS], slow[ROWS], busy[ROWS];
+    for (int i = 0; i < ROWS; i++) {
+        x[i] = 1e-3 * i;
+        slow[i] = sin(5 * x[i]);
+        busy[i] = sin(900 * x[i]);
+    }
+    const figure_series calm[] = {{"hub", "hub", x, slow, ROWS},
+                                  {"tip", "tip", x, x, ROWS, .colour = SLOT_GREEN}};
+    const figure_series quick[] = {{"hub", "hub", x, slow, ROWS},
+                                   {"tip", "tip", x, busy, ROWS, .colour = SLOT_GREEN}};
+    const figure_panel panels[] = {{.y = {"angle"}, .series = calm, .series_count = 2},
+                                   {.y = {"velocity"},
+                                    .series = quick,
+                                    .series_count = 2}};
+    for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
+        const figure fig = {.x = {"time"},
+                            .panels = panels,
+                            .panel_count = 2,
+                            .theme = theme};
+        swatch_count = 0;
+        cairo_surface_destroy(paint_pixels(&fig, SCALE, NULL));
+        assert_int_equal(swatch_count, 4);
+        for (int i = 0; i < 2; i++) {
+            assert_int_equal(swatches[i].index, swatches[i + 2].index);
+            assert_true(same_dashes(&swatches[i], &swatches[i + 2]));
+            check_close(swatches[i].ink.red, swatches[i + 2].ink.red, 0);
+            check_close(swatches[i].width, swatches[i + 2].width, 0);
+        }
+    }
 }
 
 // Every colour of the palette differs from every other for everyone, and contrasts with

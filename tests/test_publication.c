@@ -386,6 +386,36 @@ static char *data_of_recipe(const char *name, int *panels)
     return file_text("recipe.csv");
 }
 
+// The look of a run in a panel, by the label that tells it: its rank.
+static int rank_of_run(const artwork *a, const char *label)
+{
+    const figure_panel *panel = &a->plotted->panels[0];
+    for (int i = 0; i < panel->series_count; i++) {
+        if (g_strcmp0(panel->series[i].label, label) == 0) {
+            return panel->series[i].run;
+        }
+    }
+    fail_if(true, "no series is labelled '%s'", label);
+    return 0;
+}
+
+// The printed and the corrected model look alike in figures and in recipes.
+TEST(models_keep_their_look_in_recipes)
+{
+    for (EACH_TEXT(id, "3-2", "3-3", "3-4", "3-8")) {
+        g_autofree char *number = g_strdelimit(g_strdup(*id), "-", '.');
+        SCOPED(artwork_finish) artwork thesis = open_figure(number, (figure_options){0});
+        SCOPED(artwork_finish) artwork recipe = {0};
+        DONE(open_recipe(formatted("%s/recipes/fig-%s.yaml",
+                                   getenv("IMPACTLAB_SCENARIOS"), *id),
+                         0, &recipe, &f));
+        for (EACH_TEXT(model, "printed", "corrected")) {
+            assert_int_not_equal(rank_of_run(&thesis, *model), 0);
+            assert_int_equal(rank_of_run(&thesis, *model), rank_of_run(&recipe, *model));
+        }
+    }
+}
+
 // Small multiples are what the same runs give one by one.
 TEST(multiples_are_runs_at_their_values)
 {

@@ -25,7 +25,7 @@ static void add_printed_peak(owned_figure *o, const summary *m,
     peak[1] = forces[column];
     owned_figure_add(o, 0,
                      (figure_series){"Table 4.3", "Table 4.3", peak, peak + 1, 1,
-                                     .colour = SLOT_VERMILLION, .no_line = true,
+                                     .colour = SLOT_BLUE, .no_line = true,
                                      .marker = MARKER_DIAMOND, .radius = 2.6});
 
     // how far the run is from it

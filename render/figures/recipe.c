@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "render/figures/recipe_parts.h"
+#include "render/plot/run_style.h"
 #include "render/plot/study_plot.h"
 #include "src/base/input_file.h"
 
@@ -216,6 +217,10 @@ static void add_recorded(recipe *r, int panel, const recipe_source *s, int index
     out->name = owned_figure_printf(r->plot, "%s %s", s->name, signal_table[index].name);
     out->style = LINE_SOLID;
     out->colour = colour_of_run;
+    if (signals == 1 && !data) {
+        out->run = s->rank;
+        out->colour = run_style_of(s->rank).slot;
+    }
     if (data) {
         out->colour = SLOT_BLACK;
         out->no_line = true;

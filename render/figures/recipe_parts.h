@@ -26,6 +26,7 @@ typedef struct recipe_source {
     const char *x, *y;  // of a table: columns
     const char *z;      // of a table: the column of a map's colours; NULL: a curve
     double shift;       // of data [s]
+    int rank;           // of a run, from 1: its look wherever it shows
     place at;           // its place in the recipe
 
     // once it is opened

@@ -55,6 +55,7 @@ static void complete_source(recipe_context *c, const tree_node *node, void *into
 {
     recipe_source *s = into;
     s->at = (place){node->line, node->column};
+    s->rank = (int)(s - c->recipe->sources) + 1;
     const char *needed = s->file, *key = "file";
     if (s->kind == SOURCE_RUN) {
         needed = s->scenario;

@@ -455,6 +455,30 @@ static bool fill_panels(drawing *d, placement *grid)
     return moved;
 }
 
+// Whether two series, of any panels, ask for one pen.
+static bool same_pen(const figure_series *a, const figure_series *b)
+{
+    return a->colour == b->colour && a->style == b->style && a->run == b->run &&
+           a->secondary == b->secondary;
+}
+
+// A line that is busy in one panel is drawn so in all, so that it has one look.
+static void share_busy_lines(drawing *d)
+{
+    for (int p = 0; p < d->fig->panel_count; p++) {
+        const panel_layout *from = &d->panels[p];
+        for (int q = 0; q < d->fig->panel_count; q++) {
+            panel_layout *to = &d->panels[q];
+            for (int i = 0; i < from->panel->series_count; i++) {
+                for (int k = 0; k < to->panel->series_count; k++) {
+                    to->busy[k] |= from->busy[i] && same_pen(&from->panel->series[i],
+                                                             &to->panel->series[k]);
+                }
+            }
+        }
+    }
+}
+
 // ---- the whole
 
 // Chooses the ticks of the vertical axes and of the colour scales.
@@ -557,5 +581,6 @@ status layout_figure(drawing *d, fault *f)
         TRY(check_room(d, f));
         again = fill_panels(d, grid);
     }
+    share_busy_lines(d);
     return STATUS_OK;
 }

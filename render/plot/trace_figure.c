@@ -77,6 +77,20 @@ static const char *label_of(const trace_figure *t, int panel, int run, int index
     return NULL;
 }
 
+// The rank of a run where it is told from another one by its look, as in recipes; 0 where
+// the look is the signal's: of a run alone, or beside a panel of several signals.
+static int rank_of(const trace_figure *t, int run)
+{
+    bool told_apart = t->run_count > 1 && !t->runs[1].points;
+    for (int i = 0; i < t->drawn->figure.panel_count; i++) {
+        told_apart = told_apart && t->panels[i].signals[1] == NULL;
+    }
+    if (told_apart) {
+        return run + 1;
+    }
+    return 0;
+}
+
 // The series of one run in a panel.
 static void add_run_curves(const trace_figure *t, int panel, int run)
 {
@@ -110,6 +124,8 @@ static void add_run_curves(const trace_figure *t, int panel, int run)
         // with its entry in the legend
         if (run > 0 && of->points) {
             show_as_points(s);
+        } else {
+            s->run = rank_of(t, run);
         }
         s->label = label_of(t, panel, run, index, first);
         if (run == 0 && !only_signal) {
