@@ -15,7 +15,7 @@ rooms="src/base src/tables src/arm src/thesis src/contact src/engines src/engine
     src/study/store src/exchange src/api/impactlab src/api
     render/page render/plot render/scene render/figures
     ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands
-    ui/commands/studies ui"
+    ui/commands/studies ui/commands/exchange ui"
 
 # the room of a file; what a controller is stands below all that the rig is made of
 room_of() {
@@ -24,7 +24,8 @@ room_of() {
 
 # "module room header-module header-room" of each include of the project's own files
 list_includes() {
-    find src render ui -name '*.[ch]' -print0 | xargs -0 grep -HE '^ *# *include "' |
+    # what stands in board goes out with an exported law and is no part of the lab
+    find src render ui -name board -prune -o -name '*.[ch]' -print0 | xargs -0 grep -HE '^ *# *include "' |
         sed -E 's/^([^:]*):[^"]*"([^"]*)".*/\1 \2/' |
         while read -r file header; do
             echo "${file%.[ch]} $(room_of "$file") ${header%.[ch]} $(room_of "$header")"

@@ -116,6 +116,7 @@ typedef struct arguments {
     int operand_count;
     bool quiet;
     bool fitted; // --fitted
+    bool single; // --float, of export
 
     // what is run
     option_list sets;                 // --set

@@ -10,7 +10,7 @@
 // beam presses, so that the position control acts on its error only.
 #include <string.h>
 
-#include "src/rig/laws/laws.h"
+#include "src/rig/laws/law_parts.h"
 #include "src/base/plain_math.h"
 
 #define READING_LAG 3 // periods by which a reading lags behind the force

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/rig/laws/laws.h"
+#include "src/rig/laws/law_parts.h"
 
 enum { APPROACH, CONTACT }; // modes
 

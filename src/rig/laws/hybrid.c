@@ -23,7 +23,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/rig/laws/laws.h"
+#include "src/rig/laws/law_parts.h"
 #include "src/base/extremes.h"
 
 enum { APPROACH, IMPACT, FORCE, RECOVER }; // modes; the last is recovering's alone

@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/rig/laws/laws.h"
+#include "src/rig/laws/law_parts.h"
 
 enum { APPROACH, CONTACT };
 static const char *const mode_names[] = {"approach", "contact", NULL};

@@ -46,7 +46,7 @@
 // of d jumps by h P - g v.
 #include <math.h>
 
-#include "src/rig/laws/laws.h"
+#include "src/rig/laws/law_parts.h"
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
 

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "src/rig/laws/observer_paths.h"
-#include "src/rig/laws/laws.h"
+#include "src/rig/laws/law_parts.h"
 #include "src/rig/laws/observer_design.h"
 
 enum { TRAVEL, PRESS, HOLD, RECOVER, CATCH };

@@ -36,7 +36,7 @@
 #include <string.h>
 
 #include "src/base/sincos.h"
-#include "src/rig/laws/laws.h"
+#include "src/rig/laws/law_parts.h"
 
 enum { TRAVEL, PRESS, BACK };
 static const char *const mode_names[] = {"travel", "press", "back", NULL};
@@ -182,7 +182,13 @@ typedef struct touch_memory {
 
 static double bounded(double x, double low, double high)
 {
-    return fmax(low, fmin(x, high));
+    if (x < low) {
+        return low;
+    }
+    if (x > high) {
+        return high;
+    }
+    return x;
 }
 
 // --- design ----------------------------------------------------------------------------
@@ -216,7 +222,8 @@ static void design_arm(touch_design *d, const controller_setup *rig)
         d->hub_inertia * d->link_inertia - d->coupling * d->coupling;
     d->frequency = sqrt(rig->k2 * d->inertia / determinant);
     d->compliance = d->link_inertia / determinant - 1 / d->inertia;
-    inline_sincos(d->frequency * rig->period, &d->sine, &d->cosine);
+    d->sine = inline_sin(d->frequency * rig->period);
+    d->cosine = inline_cos(d->frequency * rig->period);
 }
 
 // The hub's rate at which the pulse of a touch has a force as its peak [rad/s].
