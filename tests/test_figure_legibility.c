@@ -448,7 +448,7 @@ TEST(every_comparison_can_be_read)
 {
     static const char *const names[] = {"compare/hybrid",       "compare/observer",
                                         "compare/force-pd",     "compare/impedance",
-                                        "compare/admittance",   "compare/predictive",
+                                        "compare/admittance",   "compare/touch",
                                         "compare/discontinuous"};
     enum { MOST = G_N_ELEMENTS(names) };
     static const int counts[] = {2, RUNS_TOGETHER, MOST};

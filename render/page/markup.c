@@ -11,7 +11,7 @@
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 
-#define INDEX_SIZE 0.72 // of its line's letters, but never too small to read
+#define INDEX_SIZE 0.7 // of its line's letters
 
 // ---- one text in place of another
 
@@ -49,16 +49,6 @@ char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give,
 #define APOSTROPHE "(?<=[A-Za-z])(?:'|&apos;|&#39;)(?=[A-Za-z])"
 #define SLASH      "(?<=[A-Za-z])/(?=(?:rad|s|m|V|A|N)(?![A-Za-z]))"
 
-double text_index_letters(double size)
-{
-    return fmax(INDEX_SIZE * size, fmin(size, LETTERS_LEAST));
-}
-
-// Sizes of a line's letters, and points of the page to a point of them.
-typedef struct line_letters {
-    double size, scale;
-} line_letters;
-
 // What text_translate looks for, by the groups of its expression; a tag of any other kind
 // is in none of them.
 enum {
@@ -73,12 +63,11 @@ enum {
 };
 
 // The letters of an index, raised by a share of the line's size.
-static void begin_index(GString *out, const line_letters *l, double rise)
+static void begin_index(GString *out, double size, double rise)
 {
     // in 1/1024 of a point, which every version of Pango understands
-    const double small = text_index_letters(l->size * l->scale) / l->scale;
-    text_append(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
-                (int)(rise * l->size * 1024));
+    text_append(out, "<span size=\"%d\" rise=\"%d\">", (int)(INDEX_SIZE * size * 1024),
+                (int)(rise * size * 1024));
 }
 
 // What stands in the place of a match of text_translate.
@@ -92,6 +81,7 @@ static gboolean translate(const GMatchInfo *match, GString *out, gpointer contex
                                           [TYPED_APOSTROPHE] = "\u2019",
                                           [UNIT_SLASH] = "/\u2060"};
     const int group = g_match_info_get_match_count(match) - 1;
+    const double *size = context;
     switch (group) {
     case OTHER_TAG: {
         g_autofree char *tag = g_match_info_fetch(match, 0);
@@ -99,10 +89,10 @@ static gboolean translate(const GMatchInfo *match, GString *out, gpointer contex
         break;
     }
     case SUBSCRIPT:
-        begin_index(out, context, -0.2);
+        begin_index(out, *size, -0.2);
         break;
     case SUPERSCRIPT:
-        begin_index(out, context, 0.35);
+        begin_index(out, *size, 0.35);
         break;
     default:
         g_string_append(out, instead[group]);
@@ -110,12 +100,12 @@ static gboolean translate(const GMatchInfo *match, GString *out, gpointer contex
     return FALSE;
 }
 
-char *text_translate(const char *markup, double size, double scale)
+char *text_translate(const char *markup, double size)
 {
-    assert(size > 0 && scale > 0);
+    assert(size > 0);
     static text_pattern words = {"(<sub>)|(<sup>)|(</su[bp]>)|<[^<>]*|(\u2009)|(" JOINT
                                  ")|(" APOSTROPHE ")|(" SLASH ")"};
-    return text_replaced(&words, markup, translate, &(line_letters){size, scale});
+    return text_replaced(&words, markup, translate, &size);
 }
 
 // Blanks become dots, digits and minus signs raised ones; a slash stays.
@@ -140,6 +130,16 @@ char *text_unit(const char *unit)
         }
     }
     return g_string_free(shown, FALSE);
+}
+
+char *text_symbol(const char *symbol)
+{
+    const size_t letters = strcspn(symbol, "_");
+    if (symbol[letters] == '\0') {
+        return text_printf("<i>%s</i>", symbol);
+    }
+    return text_printf("<i>%.*s</i><sub>%s</sub>", (int)letters, symbol,
+                       symbol + letters + 1);
 }
 
 const char *text_or(const char *text, const char *otherwise)

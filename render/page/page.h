@@ -31,7 +31,7 @@ typedef struct page_look {
 
 // Sizes of letters [pt].
 #define LETTERS_NORMAL 8.0 // of labels
-#define LETTERS_LEAST  6.0 // of anything
+#define LETTERS_LEAST  6.0 // of anything but indices
 
 // Size of letters that are `size` where labels have 8 pt, for labels of `letters` (0: 8);
 // never less than is readable.
@@ -44,8 +44,8 @@ typedef struct figure_rect {
 
 typedef struct figure_text {
     figure_rect place; // upright, also round a rotated text
-    double size;   // of its letters on the page [pt], of the smallest if it has indices
-    char text[64]; // its beginning, without markup
+    double size;       // of its letters on the page [pt]; indices have 70 % of it
+    char text[64];     // its beginning, without markup
 } figure_text;
 
 // The values at the edges of a panel.

@@ -67,15 +67,13 @@ static text_block title_block(const sketch_frame *frame, const char *markup)
                         .family = frame->look.font,
                         .bold = true,
                         .balanced = true,
-                        .width = inner_width(frame),
-                        .scale = page_scale(frame)};
+                        .width = inner_width(frame)};
 }
 
 static text_block caption_block(const sketch_frame *frame)
 {
     return (text_block){frame->caption, frame_letters(frame, CAPTION_SIZE),
-                        .family = frame->look.font, .width = inner_width(frame),
-                        .scale = page_scale(frame)};
+                        .family = frame->look.font, .width = inner_width(frame)};
 }
 
 // Heights of title and caption, with the space between them and the drawing.
@@ -447,7 +445,6 @@ static text_block framed(const sketch *s, text_block t)
     if (s->frame != NULL) {
         t.size = sketch_letters(s->frame, t.size);
         t.family = s->frame->look.font;
-        t.scale = s->scale;
     }
     return t;
 }

@@ -98,7 +98,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 
     // text that is no markup is shown as it is
     g_autofree char *valid = text_printable(t->markup);
-    g_autofree char *markup = text_translate(valid, t->size, t->scale > 0 ? t->scale : 1);
+    g_autofree char *markup = text_translate(valid, t->size);
     if (pango_parse_markup(markup, -1, 0, NULL, NULL, NULL, NULL)) {
         pango_layout_set_markup(layout, markup, -1);
     } else {
@@ -160,7 +160,7 @@ double page_letters(double letters, double size)
     return LETTERS_LEAST;
 }
 
-// Keeps the beginning of a text with its place and the size of its smallest letters.
+// Keeps the beginning of a text with its place and the size of its letters.
 void report_add_text(figure_report *report, const char *markup, double size,
                      figure_rect place)
 {
@@ -171,15 +171,10 @@ void report_add_text(figure_report *report, const char *markup, double size,
     figure_text *t = &report->texts[report->text_count++];
     g_autofree char *plain = text_plain(markup);
     const char *end;
-    bool indexed = strstr(markup, "<sub>") != NULL || strstr(markup, "<sup>") != NULL;
 
     // as it is on the page
     t->place = place;
-    if (indexed) {
-        t->size = text_index_letters(size);
-    } else {
-        t->size = size;
-    }
+    t->size = size;
     g_strlcpy(t->text, plain, sizeof t->text);
 
     // a character that was cut in two is removed

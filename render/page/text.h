@@ -20,16 +20,20 @@ typedef struct text_pattern {
 char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give,
                     gpointer context);
 
-// Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size on a
-// page of the given scale (points of the page to a point of the size), spaces at which a
+// Replaces <sub>..</sub> and <sup>..</sup> by spans of 70 % of the given size, spaces at
+// which a
 // line must not end by no-break spaces (between a number and its unit, around an equals
 // sign, before a version), and a straight apostrophe within a word by a typographic one.
 // Free the result with g_free.
-char *text_translate(const char *markup, double size, double scale);
+char *text_translate(const char *markup, double size);
 
 // A unit as the SI brochure sets it: "rad/s2" gives "rad/s²", "kg m2" gives "kg·m²". Free
 // the result with g_free.
 char *text_unit(const char *unit);
+
+// A symbol of the parameter table as markup: "k_2" gives "<i>k</i><sub>2</sub>". Free the
+// result with g_free.
+char *text_symbol(const char *symbol);
 
 // A number of `digits` significant digits, zeros at its end too, and its unit:
 // "5.40\u2009N". Free the result with g_free.
@@ -68,10 +72,6 @@ const char *text_sign(double value);
 // g_free.
 char *text_printable(const char *bytes);
 
-// Size of an index (subscript or superscript) in a line of letters of the given size
-// [pt].
-double text_index_letters(double size);
-
 // The default family.
 #define TEXT_FAMILY "DejaVu Sans"
 
@@ -93,8 +93,6 @@ typedef struct text_block {
     double leading; // distance of lines, relative to that of letters without powers; 0: 1
     double width;   // at which lines are wrapped; 0: never
     bool balanced;  // lines of about equal length, with no single word in the last
-    double scale;   // points of the page per point of the size, so that indices are
-                    // readable; 0: 1
 } text_block;
 
 // Fails with STATUS_CANNOT_READ if TEXT_FAMILY is not installed, with what to install in

@@ -87,9 +87,7 @@ double widest_tick(const drawing *d, const axis *a, double size)
     return widest;
 }
 
-// The axis' title as it fits beside an axis of the given length: with the label, or with
-// its symbol alone where the label would need two lines. Give it to g_free.
-static char *fitting_title(const drawing *d, const axis *a, double length)
+char *fitting_title(const drawing *d, const axis *a, double length)
 {
     char *title = axis_title(a);
     if (a->from->symbol != NULL && width_of(d, title, d->style.label) > length) {

@@ -165,6 +165,9 @@ bool rects_meet(const figure_rect *a, const figure_rect *b, double space);
 // --- axes: drawing.c
 
 double widest_tick(const drawing *d, const axis *a, double size);
+// The axis' title as it fits along an axis of the given length: with the label, or with
+// its symbol alone where the label would need two lines. Free it with g_free.
+char *fitting_title(const drawing *d, const axis *a, double length);
 // Height of that title, wrapped beside the axis; 0 without a title.
 double axis_title_height(const drawing *d, const axis *a, double length);
 void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y);

@@ -263,11 +263,11 @@ static void draw_all(drawing *d)
     g_free((char *)title.markup);
 
     // the horizontal axis once, below all columns
-    g_autofree char *x_title = axis_title(&d->x);
+    const double middle = (d->column[0].left + d->column[d->columns - 1].right) / 2;
+    const double half = fmin(middle, d->page.width - middle) - PAGE_MARGIN;
+    g_autofree char *x_title = fitting_title(d, &d->x, 2 * half);
     if (fig->x.label != NULL) {
-        draw_markup(d, x_title, d->style.label,
-                    (d->column[0].left + d->column[d->columns - 1].right) / 2,
-                    d->x_label_y, (anchor){0.5, 0});
+        draw_markup(d, x_title, d->style.label, middle, d->x_label_y, (anchor){0.5, 0});
     }
     common_legend(d, true);
     for (int i = 0; i < fig->panel_count; i++) {

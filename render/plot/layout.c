@@ -245,8 +245,10 @@ static double space_above(const panel_layout *l)
     double space = 0;
     if (l->legend_column) {
         space += l->legend.height + 2;
-    } else if (l->legend_row) {
+    } else if (l->panel->key_above) {
         space += fmax(LEGEND_ROW, l->legend.height + 2);
+    } else if (l->legend_row) {
+        space += LEGEND_ROW;
     }
     if (l->panel->heading != NULL) {
         space += HEADING_ROW;

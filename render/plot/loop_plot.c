@@ -214,7 +214,7 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
     static const figure_level one = {0};
     char changes[SCENARIO_CHANGES];
     owned_figure *o = owned_figure_create(BODE_PANELS, "%s: frequency response%s",
-                                          s->name, scenario_changes(s, changes));
+                                          s->title, scenario_changes(s, changes));
 
     // gain and phase of each response
     for (int k = 0; k < count; k++) {
@@ -355,7 +355,7 @@ owned_figure *nyquist_figure_create(const scenario *s, const linear_response *lo
     static const double critical[] = {-1, 0};
     char changes[SCENARIO_CHANGES];
     owned_figure *o = owned_figure_create(1, "%s: loop gain in the complex plane%s",
-                                          s->name, scenario_changes(s, changes));
+                                          s->title, scenario_changes(s, changes));
 
     // the loop gain with its frequencies, and the point that it keeps away from
     const double far = far_size(loop);

@@ -58,7 +58,8 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 // Makes the figure of a tuning: the value of every evaluation, and the least so far.
 owned_figure *tune_figure_create(const tuning *t, const char *changes)
 {
-    owned_figure *o = owned_figure_create(1, "%s: tuned%s", t->asked.base->name, changes);
+    owned_figure *o =
+        owned_figure_create(1, "%s: tuned%s", t->asked.base->title, changes);
     double *number = owned_figure_numbers(o, t->done);
     double *value = owned_figure_numbers(o, t->done);
     double *least = owned_figure_numbers(o, t->done);
@@ -131,8 +132,8 @@ owned_figure *identify_figure_create(const identification *id)
     assert(id->trace_count > 0 && id->trace_count <= FIGURE_PANELS);
     char changes[SCENARIO_CHANGES];
     owned_figure *o =
-        owned_figure_create(id->trace_count, "%s: residuals of the fit%s", id->base->name,
-                            scenario_changes(id->base, changes));
+        owned_figure_create(id->trace_count, "%s: residuals of the fit%s",
+                            id->base->title, scenario_changes(id->base, changes));
 
     // a panel for each trace; residuals stand trace by trace, channel by channel
     const double *residual = id->residual;

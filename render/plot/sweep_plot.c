@@ -170,6 +170,19 @@ static const char *point_label(owned_figure *o, const varied *v, size_t i)
     return owned_figure_keep(o, text_escape(word));
 }
 
+// Gives an axis its symbol, behind its label too; a parameter without one goes by its
+// path where the label has no room.
+static void name_shortly(owned_figure *o, figure_axis *a, const char *symbol)
+{
+    if (symbol == NULL) {
+        a->symbol = owned_figure_keep(o, text_escape(a->name));
+        return;
+    }
+    char *markup = owned_figure_keep(o, text_symbol(symbol));
+    a->symbol = markup;
+    a->label = owned_figure_printf(o, "%s %s", a->label, markup);
+}
+
 // The axis of a varied parameter.
 static figure_axis varied_axis(owned_figure *o, varied *v, const sweep_axis *axis)
 {
@@ -183,6 +196,7 @@ static figure_axis varied_axis(owned_figure *o, varied *v, const sweep_axis *axi
         description = NULL;
     }
     figure_axis out = described_axis(o, axis->name, description, info->unit);
+    name_shortly(o, &out, info->symbol);
     if (axis->logarithmic) {
         out.scale = SCALE_LOGARITHMIC;
     }
@@ -343,9 +357,16 @@ static void describe_map(owned_figure *o, const sweep_picture *p, const varied *
 // What was varied, and how many runs have no value.
 static char *caption_of(const sweep *s, size_t missing)
 {
-    GString *out = g_string_new("Varied: ");
+    g_autofree char *name = text_escape(s->base->name);
+    GString *out = g_string_new(name);
+    g_string_append(out, ", varied: ");
     for (int i = 0; i < s->axis_count; i++) {
+        const char *symbol = sweep_axis_parameter(&s->axes[i])->symbol;
         text_append(out, "%s%s", i > 0 ? ", " : "", s->axes[i].name);
+        if (symbol != NULL) {
+            g_autofree char *markup = text_symbol(symbol);
+            text_append(out, " (%s)", markup);
+        }
     }
     if (missing > 0) {
         const char *runs = missing == 1 ? "run" : "runs";
@@ -447,10 +468,10 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
         info = &summary_table[summary_index(p->key)];
     }
     char changes[SCENARIO_CHANGES];
-    owned_figure *o =
-        owned_figure_create(1, "%s: %s of %zu runs%s%s", from->base->name, info->label,
-                            from->run_count, sampled[from->sampling],
-                            scenario_changes(from->base, changes));
+    g_autofree char *quantity_name = text_label(info->label);
+    owned_figure *o = owned_figure_create(1, "%s of %zu runs%s%s", quantity_name,
+                                          from->run_count, sampled[from->sampling],
+                                          scenario_changes(from->base, changes));
 
     // axes and layers
     const figure_axis quantity = described_axis(o, p->key, info->label, info->unit);

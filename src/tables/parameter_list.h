@@ -6,63 +6,70 @@
 //     ...) CHOICE(group, field, meaning, last, words, ...)   TEXT(group, field, meaning,
 //     without, ...) INTEGER(group, field, meaning, from, to, ...)     LIST(group, field,
 //     meaning, unit, from, to)
-// with its default, one for both models or DEFAULTS(corrected, printed), and TIMED where
-// it may change during a run; a text says what it is `without` anybody giving it. The
-// path is group.field, a range includes both its ends, a meaning is one sentence without
-// a full stop. A parameter is added here and nowhere else. A row wraps where it reads
-// best, so that the formatter is off.
+// with its default, one for both models or DEFAULTS(corrected, printed), TIMED where it
+// may change during a run, and a SYMBOL where papers have one, its index behind "_"; a
+// text says what it is `without` anybody giving it. The path is group.field, a range
+// includes both its ends, a meaning is one sentence without a full stop. A parameter is
+// added here and nowhere else. A row wraps where it reads best, so that the formatter is
+// off.
 
 // clang-format off
 GROUP(arm_parameters)
 CHOICE(arm, model, "equations of motion: derived anew, or as the thesis prints them",
     1, "corrected|printed", DEFAULTS(ARM_CORRECTED, ARM_PRINTED))
 INTEGER(arm, links, "number of rigid links the beam is cut into (N)",
-    1, PARAMETER_LINKS_MOST, DEFAULT(2))
+    1, PARAMETER_LINKS_MOST, DEFAULT(2), SYMBOL("N"))
 CHOICE(arm, hub_joint, "joint between hub and first link: one body, the spring k1, or the beam's "
     "own root, a spring k2 N", 2, "rigid|spring|beam", DEFAULTS(HUB_RIGID, HUB_SPRING))
-REAL(arm, length, "length of the beam, all links together", "m", 0.01, 100, DEFAULT(1.0))
-REAL(arm, mass, "mass of the beam, all links together", "kg", 1e-4, 1e4, DEFAULT(0.40108))
+REAL(arm, length, "length of the beam, all links together", "m", 0.01, 100, DEFAULT(1.0),
+    SYMBOL("L"))
+REAL(arm, mass, "mass of the beam, all links together", "kg", 1e-4, 1e4, DEFAULT(0.40108),
+    SYMBOL("m"))
 REAL(arm, hub_inertia, "moment of inertia of hub and motor shaft (I1)",
-    "kg m2", 0, 1e4, DEFAULT(5.2e-3))
+    "kg m2", 0, 1e4, DEFAULT(5.2e-3), SYMBOL("I_1"))
 REAL(arm, link_inertia, "moment of inertia of a link about its centre of mass (I2 = I3, N = 2 "
-    "only)", "kg m2", 0, 1e4, DEFAULTS(DERIVED, 1.67e-5))
+    "only)", "kg m2", 0, 1e4, DEFAULTS(DERIVED, 1.67e-5), SYMBOL("I_2"))
 REAL(arm, k1, "stiffness of the hub joint (arm.hub_joint = spring; with beam it is k2 N)",
-    "N m/rad", 1e-6, 1e9, DEFAULTS(K1_THESIS, K1_PRINTED_TABLES), TIMED)
+    "N m/rad", 1e-6, 1e9, DEFAULTS(K1_THESIS, K1_PRINTED_TABLES), TIMED, SYMBOL("k_1"))
 REAL(arm, k2, "stiffness of the middle joint of the two-link beam; each joint of N links has k2 "
-    "N/2", "N m/rad", 1e-6, 1e9, DEFAULT(4.92), TIMED)
+    "N/2", "N m/rad", 1e-6, 1e9, DEFAULT(4.92), TIMED, SYMBOL("k_2"))
 REAL(arm, EI, "bending stiffness of the beam, in place of arm.k2 = 2 EI/length",
-    "N m2", 1e-9, 1e12, DEFAULT(DERIVED), TIMED)
+    "N m2", 1e-9, 1e12, DEFAULT(DERIVED), TIMED, SYMBOL("EI"))
 LIST(arm, joint_stiffness, "stiffness of every joint between links from the hub outwards, of a "
     "beam the root's first, in place of arm.k2", "N m/rad", 1e-6, 1e9)
 LIST(arm, link_lengths, "length of every link from the hub outwards, in place of arm.length; "
     "masses go with the lengths", "m", 1e-4, 100)
 REAL(arm, damping_ratio, "structural damping ratio of the first clamped-free mode",
-    "", 0, 1, DEFAULT(0))
+    "", 0, 1, DEFAULT(0), SYMBOL("ζ"))
 LIST(arm, modal_ratios, "damping ratios of the modes with the hub held, from the slowest on, in "
     "place of arm.damping_ratio; modes beyond the list have none", "", 0, 1000)
 REAL(arm, air_drag, "drag of the air on the beam per length and velocity",
     "N s/m2", 0, 1e6, DEFAULT(0))
 REAL(arm, stiffening, "share by which k2 grows with the square of its bend, the torque being k2 b "
     "(1 + stiffening b^2); of N links the same curvature counts", "1/rad2", 0, 1e6, DEFAULT(0))
-REAL(arm, tip_mass, "mass that the tip carries, such as a sensor", "kg", 0, 1000, DEFAULT(0))
+REAL(arm, tip_mass, "mass that the tip carries, such as a sensor", "kg", 0, 1000, DEFAULT(0),
+    SYMBOL("m_t"))
 REAL(arm, tilt, "tilt of the arm's plane to the level: g sin(tilt) acts along the angle -pi/2",
-    "rad", -3.2, 3.2, DEFAULT(0))
+    "rad", -3.2, 3.2, DEFAULT(0), SYMBOL("α"))
 END_GROUP(arm_parameters)
 
 GROUP(motor_parameters)
-REAL(motor, voltage, "command to the amplifier, held constant", "V", -1000, 1000, DEFAULT(1), TIMED)
+REAL(motor, voltage, "voltage commanded to the amplifier, held constant",
+    "V", -1000, 1000, DEFAULT(1), TIMED, SYMBOL("v"))
 REAL(motor, voltage_limit, "largest command either way; beyond it the command saturates",
     "V", 0, 1000, DEFAULT(10), TIMED)
 REAL(motor, amplifier_gain, "volts at the motor per volt of command", "", 0, 1000, DEFAULT(6.02))
-REAL(motor, torque_constant, "torque per ampere (kT)", "N m/A", 0, 1000, DEFAULT(TORQUE_CONSTANT))
-REAL(motor, back_emf, "back electromotive force (kB)", "V s/rad", 0, 1000, DEFAULT(2.443))
-REAL(motor, resistance, "armature resistance (Ra)", "ohm", 1e-3, 1e6, DEFAULT(33.6))
+REAL(motor, torque_constant, "torque per ampere (kT)", "N m/A", 0, 1000, DEFAULT(TORQUE_CONSTANT),
+    SYMBOL("k_T"))
+REAL(motor, back_emf, "back electromotive force (kB)", "V s/rad", 0, 1000, DEFAULT(2.443),
+    SYMBOL("k_B"))
+REAL(motor, resistance, "armature resistance (Ra)", "ohm", 1e-3, 1e6, DEFAULT(33.6), SYMBOL("R_a"))
 REAL(motor, inductance, "armature inductance (motor.drive = voltage); 0: the current follows at "
-    "once", "H", 0, 1000, DEFAULT(0))
+    "once", "H", 0, 1000, DEFAULT(0), SYMBOL("L_a"))
 REAL(motor, viscous_friction, "viscous friction at the hub (kfr)",
-    "N m s/rad", 0, 1000, DEFAULT(5.4192e-3), TIMED)
+    "N m s/rad", 0, 1000, DEFAULT(5.4192e-3), TIMED, SYMBOL("k_fr"))
 REAL(motor, stiction, "Coulomb friction torque at the hub, sliding and sticking (kst)",
-    "N m", 0, 1000, DEFAULT(0.045), TIMED)
+    "N m", 0, 1000, DEFAULT(0.045), TIMED, SYMBOL("k_st"))
 CHOICE(motor, drive, "what the amplifier gives for a command: a voltage, against which back EMF "
     "works, or a current, which it holds", 1, "voltage|current", DEFAULT(DRIVE_VOLTAGE))
 REAL(motor, transconductance, "current per volt of command (motor.drive = current), "
@@ -76,20 +83,20 @@ GROUP(wall_parameters)
 CHOICE(wall, kind, "a fixed point the last link's line may not pass, a flat wall the tip may not "
     "pass, or none", 2, "point|plane|none", DEFAULT(WALL_POINT))
 REAL(wall, angle, "direction of contact point or flat wall as seen from the hub axis",
-    "rad", -3, 3, DEFAULT(0.1), TIMED)
+    "rad", -3, 3, DEFAULT(0.1), TIMED, SYMBOL("θ_w"))
 REAL(wall, restitution, "coefficient of restitution e of an impact on a rigid wall or a face with "
-    "a mass (0: plastic)", "", 0, 1, DEFAULT(0), TIMED)
+    "a mass (0: plastic)", "", 0, 1, DEFAULT(0), TIMED, SYMBOL("e"))
 CHOICE(wall, contact, "how the wall answers: it does not give, or it is a spring and a damper with "
     "the force k x + c v or x^n (k + c v) at the depth x",
     2, "rigid|kelvin-voigt|hunt-crossley", DEFAULT(WALL_RIGID))
 REAL(wall, stiffness, "stiffness k of a wall that gives, in N/m^n for hunt-crossley",
-    "N/m", 1, 1e15, DEFAULT(DERIVED))
+    "N/m", 1, 1e15, DEFAULT(DERIVED), SYMBOL("k"))
 REAL(wall, damping, "damping c of a wall that gives, in N s/m^(n+1) for hunt-crossley",
-    "N s/m", 0, 1e15, DEFAULT(DERIVED))
+    "N s/m", 0, 1e15, DEFAULT(DERIVED), SYMBOL("c"))
 REAL(wall, exponent, "exponent n of hunt-crossley; 1.5 is Hertz's for a ball on a plane",
-    "", 1, 5, DEFAULT(1.5))
+    "", 1, 5, DEFAULT(1.5), SYMBOL("n"))
 REAL(wall, mass, "mass of the face in front of the spring and damper of kelvin-voigt, which the "
-    "arm strikes as a rigid body; 0: none", "kg", 0, 1e6, DEFAULT(0))
+    "arm strikes as a rigid body; 0: none", "kg", 0, 1e6, DEFAULT(0), SYMBOL("M_f"))
 CHOICE(wall, motion, "how the wall moves along its normal: not, A sin(2 pi f (t - t0)), by A "
     "within 1/(2 f) from t0 on, smoothly up to the acceleration, or as wall.motion_file says",
     MOTION_FILE, "none|sine|step|file", DEFAULT(MOTION_NONE))
@@ -107,11 +114,11 @@ GROUP(method_parameters)
 CHOICE(method, name, "time integration",
     2, "event|newmark|generalized-alpha", DEFAULTS(METHOD_EVENT, METHOD_NEWMARK))
 REAL(method, step, "time step h; under event only the spacing of the recorded rows",
-    "s", 1e-7, 1, DEFAULT(1e-3))
-REAL(method, beta, "Newmark's beta", "", 0.01, 2, DEFAULT(0.4))
-REAL(method, gamma, "Newmark's gamma", "", 0, 2, DEFAULT(0.5))
+    "s", 1e-7, 1, DEFAULT(1e-3), SYMBOL("h"))
+REAL(method, beta, "Newmark's beta", "", 0.01, 2, DEFAULT(0.4), SYMBOL("β"))
+REAL(method, gamma, "Newmark's gamma", "", 0, 2, DEFAULT(0.5), SYMBOL("γ"))
 REAL(method, spectral_radius, "what generalised-alpha leaves of the highest modes in one step (rho "
-    "at infinity)", "", 0, 1, DEFAULT(0.8))
+    "at infinity)", "", 0, 1, DEFAULT(0.8), SYMBOL("ρ_∞"))
 REAL(method, rest_speed, "rest rule: an impact slower than this is plastic whatever e is",
     "m/s", 0, 1, DEFAULT(1e-4))
 REAL(method, residual_bound, "share of the energy put in that the ledger may lack before a run "
@@ -155,9 +162,10 @@ INTEGER(printed, newton_iterations, "printed model: Newton solves per time step"
 END_GROUP(printed_parameters)
 
 GROUP(initial_parameters)
-REAL(initial, angle, "angle of hub and all links at the start", "rad", -3, 3, DEFAULT(0))
+REAL(initial, angle, "angle of hub and all links at the start", "rad", -3, 3, DEFAULT(0),
+    SYMBOL("θ_0"))
 REAL(initial, velocity, "angular velocity of hub and all links at the start",
-    "rad/s", -1000, 1000, DEFAULT(0))
+    "rad/s", -1000, 1000, DEFAULT(0), SYMBOL("θ̇_0"))
 END_GROUP(initial_parameters)
 
 GROUP(run_parameters)
@@ -185,7 +193,7 @@ TEXT(control, settings, "parameters that only this law, plug-in or process has, 
     "and separated by spaces; control.settings.NAME is one of them", NULL, TIMED)
 TEXT(control, lock, "mode that the law is held in, by its name, or none: the law chooses",
     "none", TIMED)
-REAL(control, rate, "samples a second", "Hz", 1, 1e5, DEFAULT(200), TIMED)
+REAL(control, rate, "samples a second", "Hz", 1, 1e5, DEFAULT(200), TIMED, SYMBOL("f_s"))
 REAL(control, delay, "from a sample to the instant its command takes effect, at most five periods",
     "s", 0, 1, DEFAULT(0), TIMED)
 REAL(control, delay_periods, "further delay in nominal periods, 1/control.rate whatever the "
@@ -194,7 +202,7 @@ REAL(control, delay_periods, "further delay in nominal periods, 1/control.rate w
 REAL(control, jitter, "width over which the sampling instants scatter, at most one period",
     "s", 0, 1, DEFAULT(0), TIMED)
 INTEGER(control, seed, "seed of all noise of the rig", 0, 2147483647, DEFAULT(1))
-REAL(control, force, "commanded contact force", "N", 0, 1000, DEFAULT(1), TIMED)
+REAL(control, force, "commanded contact force", "N", 0, 1000, DEFAULT(1), TIMED, SYMBOL("f_d"))
 REAL(control, force_rate, "how fast the commanded force goes to control.force, a ramp; 0: at once, "
     "a step", "N/s", 0, 1e6, DEFAULT(0), TIMED)
 REAL(control, force_amplitude, "amplitude of a sine on the commanded force",
@@ -203,15 +211,15 @@ REAL(control, force_frequency, "frequency of that sine", "Hz", 0, 1e4, DEFAULT(1
 REAL(control, approach_voltage, "constant command of the approach",
     "V", -1000, 1000, DEFAULT(1), TIMED)
 REAL(control, kp, "position gain, per rad, of a torque in N m or of volts (control.gains)",
-    "", -1e6, 1e6, DEFAULT(10.15), TIMED)
+    "", -1e6, 1e6, DEFAULT(10.15), TIMED, SYMBOL("k_p"))
 REAL(control, kv, "velocity gain, per rad/s, of a torque in N m or of volts (control.gains)",
-    "", -1e6, 1e6, DEFAULT(0.75), TIMED)
+    "", -1e6, 1e6, DEFAULT(0.75), TIMED, SYMBOL("k_v"))
 CHOICE(control, gains, "hybrid: what kp and kv give; printed: torque in the impact mode and volts "
     "in the force mode", 2, "torque|volts|printed", DEFAULT(0), TIMED)
 CHOICE(control, coefficients, "hybrid: factors of its model, 4 k2 and 2 f l, or 6 k2 and 3 f l as "
     "printed", 1, "corrected|printed", DEFAULT(0), TIMED)
 REAL(control, transition_time, "hybrid: length of the impact mode (t_f); inverse-dynamics: how "
-    "long the force rises", "s", 1e-3, 100, DEFAULT(0.35), TIMED)
+    "long the force rises", "s", 1e-3, 100, DEFAULT(0.35), TIMED, SYMBOL("t_f"))
 REAL(control, contact_threshold, "force reading that a controller takes for contact",
     "N", 0, 1000, DEFAULT(0.05), TIMED)
 TEXT(control, k2_table, "k2 by commanded force as calibrate measures it, written FORCE:K2 and "

@@ -39,6 +39,7 @@
 #define DEFAULT(value)           .default_corrected = value, .default_printed = value
 #define DEFAULTS(ours, printed_) .default_corrected = ours, .default_printed = printed_
 #define TIMED                    .timed = true
+#define SYMBOL(letters)          .symbol = letters
 
 // The default follows from other parameters, see parameters_resolve.
 #define DERIVED (double)NAN

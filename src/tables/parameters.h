@@ -117,6 +117,7 @@ typedef struct parameter_info {
     const char *choices; // "rigid|spring" in the order of the enumeration; of a text what
                          // it is where nothing gives it; else NULL
     bool timed;          // may be changed during a run
+    const char *symbol;  // "k_2", its index behind the low line; NULL: none
     const char *description; // one sentence without a full stop
 } parameter_info;
 

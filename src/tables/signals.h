@@ -66,7 +66,8 @@ typedef enum signal_body {
            LINE_SOLID)                                                                   \
     SIGNAL(sticking, "stick", "stick", "", "1 while the hub sticks", "Sticking", 6,      \
            LINE_DOTTED)                                                                  \
-    SIGNAL(voltage, "v", "v", "V", "command to the amplifier", "Voltage", 6, LINE_SOLID) \
+    SIGNAL(voltage, "v", "v", "V", "voltage commanded to the amplifier", "Voltage", 6,   \
+           LINE_SOLID)                                                                   \
     SIGNAL(motor_torque, "τ<sub>m</sub>", "tau", "N m", "motor torque before back EMF",  \
            "Motor torque", 6, LINE_DASHED)                                               \
     SIGNAL(friction_torque, "τ<sub>c</sub>", "tauc", "N m",                              \
@@ -121,7 +122,7 @@ typedef enum signal_body {
            .optional = true)                                                             \
     SIGNAL(wall_loss, "D<sub>w</sub>", "Dw", "J", "lost in a wall that gives",           \
            "Energy lost", 5, LINE_DASH_DOT, .optional = true)                            \
-    SIGNAL(wall_place, "u<sub>w</sub>", "uw", "m",                                       \
+    SIGNAL(wall_place, "s<sub>w</sub>", "sw", "m",                                       \
            "where a wall that moves is, along its normal towards the arm",               \
            "Place of the wall", 3, LINE_SOLID, .optional = true)                         \
     SIGNAL(wall_work, "W<sub>w</sub>", "Ww", "J", "work done by a wall that moves",      \

@@ -123,8 +123,8 @@ static int publish_figure(const arguments *a, const figure *fig)
 int publish_titled(const arguments *a, const scenario *s, const char *shows,
                    const figure *fig)
 {
-    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
-    snprintf(title, sizeof title, "%s: %s%s", s->name, shows,
+    char title[256 + SCENARIO_TITLED], changes[SCENARIO_CHANGES];
+    snprintf(title, sizeof title, "%s: %s%s", s->title, shows,
              scenario_changes(s, changes));
     figure titled = *fig;
     titled.title = title;

@@ -18,8 +18,8 @@ static inline figure_series curve_of(const char *name, const char *label, const 
 }
 
 // Draws a figure to --plot according to the options, with a CSV of its numbers next to
-// it, with the title "SCENARIO: what it shows" and what was changed of the scenario.
-// Returns the exit status.
+// it, with the title "SCENARIO'S TITLE: what it shows" and what was changed of the
+// scenario. Returns the exit status.
 int publish_titled(const arguments *a, const scenario *s, const char *shows,
                    const figure *fig);
 
