@@ -89,6 +89,9 @@ expect 0 help --reference quantities
 says out '| `peak_force_N` | N |'
 expect 0 help --reference signals
 says out '| `force` |'
+expect 0 help --reference scenarios
+[ "$(grep -c '^`impactlab run ' out)" = "$("$lab" list -q | wc -l)" ] || fail "the gallery has others"
+says out '### corrected/first-impact'
 expect 0 help --reference events
 says out '| `chatter` |'
 expect 0 help --reference laws

@@ -65,6 +65,37 @@ tables() {
     fi
 }
 
+# the chapter of scenarios, each with the figure of its run
+gallery() {
+    "$program" help --reference scenarios >"$work/scenarios.md"
+    while IFS= read -r line; do
+        printf '%s\n' "$line"
+        case $line in
+        '### '*)
+            "$program" run "${line#\#\#\# }" --quiet --plot "$work/scenario.png" --width 85mm --dpi 90 >/dev/null 2>&1 || :
+            if [ -e "$work/scenario.png" ]; then
+                printf '\n<img alt="the run of %s" src="data:image/png;base64,%s">\n' \
+                    "${line#\#\#\# }" "$(base64 -w 0 "$work/scenario.png")"
+                rm "$work/scenario.png"
+            fi
+            ;;
+        esac
+    done <"$work/scenarios.md" >"$work/gallery.md"
+    chapter gallery "$work/gallery.md"
+}
+
+# every parameter in its table is a place, to which all mentions of it lead
+with_anchors() {
+    perl -0pe '
+        my %known;
+        s{(<section id="table-of-parameters">.*?</section>)}{
+            my $table = $1;
+            $table =~ s|<td([^>]*)><code>([a-z]+\.\w+)</code></td>|$known{$2} = 1; "<td$1 id=\"$2\"><code>$2<!-- --></code></td>"|ge;
+            $table}se;
+        s{<code>([a-z]+\.\w+)</code>(?!</a>)}{$known{$1} ? "<a href=\"#$1\"><code>$1</code></a>" : $&}ge;
+        s{<!-- --></code>}{</code>}g'
+}
+
 commands() {
     echo '<section id="commands"><h1>The commands</h1>'
     "$program" --help | { echo '<pre>'; escaped; echo '</pre>'; }
@@ -82,9 +113,10 @@ commands() {
     for page in "${pages[@]}"; do
         chapter "$(basename "$page" .md)" "$source/docs/$page"
     done
+    gallery
     tables
     commands
-} >"$work/body.html"
+} | with_anchors >"$work/body.html"
 contents() {
     grep -o '<section id="[^"]*">\|<h1[^>]*>.*</h1>' "$work/body.html" |
         awk -F'"' '/^<section/ { id = $2; fresh = 1; next }

@@ -22,6 +22,16 @@ done < <(find "$source/docs" -name '*.md' ! -path '*/matplotlib/*')
 for name in parameters signals quantities laws events functions claims; do
     grep -q "<section id=\"table-of-$name\">" "$page" || complain "the table of $name is no chapter"
 done
+# each parameter is a place that its mentions lead to, each scenario has its figure
+"$2" help --reference parameters | sed -n 's/^| `\([^`]*\)` |.*/\1/p' >"$work/paths"
+[ "$(wc -l <"$work/paths")" -gt 100 ] || complain "only $(wc -l <"$work/paths") parameters"
+while read -r path; do
+    grep -qF " id=\"$path\"" "$page" || complain "$path has no anchor"
+done <"$work/paths"
+grep -qF '<a href="#arm.tilt"><code>arm.tilt</code></a>' "$page" || complain "no mention leads to arm.tilt"
+while read -r name; do
+    grep -qF "alt=\"the run of $name\" src=\"data:image/png" "$page" || complain "$name has no figure in the gallery"
+done < <("$2" list -q)
 # the chapter of the laws has what stands over their code: of a file, of a family, of a member
 for words in 'm_a v' 'force_gain (f - reading)' 'In the family of <code>hybrid</code>' '= integral_gain (f'; do
     grep -qF "$words" "$page" || complain "the chapter of the laws has no '$words'"

@@ -2,6 +2,7 @@
 
 #include <glib.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/page/text.h"
@@ -9,9 +10,11 @@
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 #include "src/run/trace.h"
+#include "src/scenario/scenario.h"
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
 #include "ui/commands/help_pages.h"
+#include "ui/commands/messages.h"
 
 // Text of a cell or paragraph in which Markdown finds no marks of its own; to be freed
 // with g_free.
@@ -254,6 +257,50 @@ static void write_laws_chapter(FILE *stream)
     }
 }
 
+// What a scenario shows, and how it is run; of one with faults, these on stderr.
+static void write_scenario_section(FILE *stream, const char *name)
+{
+    scenario s;
+    if (scenario_open(&s, name, complain_sentence, NULL) != STATUS_OK) {
+        return;
+    }
+    char titled[SCENARIO_TITLED];
+    g_autofree char *title = markdown_text(scenario_titled(&s, titled));
+    g_autofree char *description = markdown_text(s.description);
+    fprintf(stream, "\n### %s\n\n**%s.** %s\n\n`impactlab run %s`\n", name, title,
+            description, name);
+    scenario_finish(&s);
+}
+
+// A section for each scenario, below its folder.
+static void write_scenarios_chapter(FILE *stream)
+{
+    char **names;
+    int count;
+    fault f = {0};
+    if (scenario_list(&names, &count, &f) != STATUS_OK) {
+        complain_fault(&f);
+        return;
+    }
+
+    fprintf(stream, "# Gallery of scenarios\n\nEvery scenario that ships, with what it "
+                    "shows and its command.\n");
+    const char *before = "";
+    for (int i = 0; i < count; i++) {
+        const int length = (int)strcspn(names[i], "/");
+        if (strncmp(names[i], before, (size_t)length + 1) != 0) {
+            fprintf(stream, "\n## %.*s\n", length, names[i]);
+        }
+        write_scenario_section(stream, names[i]);
+        before = names[i];
+    }
+
+    for (int i = 0; i < count; i++) {
+        free(names[i]);
+    }
+    free(names);
+}
+
 // --- the man page of scenario files ----------------------------------------------------
 
 // A parameter with its unit, meaning, default and range.
@@ -318,7 +365,8 @@ void write_reference(FILE *stream, const char *page)
     } pages[] = {
         {"parameters", write_parameters_chapter}, {"signals", write_signals_chapter},
         {"quantities", write_quantities_chapter}, {"laws", write_laws_chapter},
-        {"events", write_events_chapter},         {"scenario.5", write_scenario_page},
+        {"events", write_events_chapter},         {"scenarios", write_scenarios_chapter},
+        {"scenario.5", write_scenario_page},
     };
 
     for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
