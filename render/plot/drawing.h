@@ -229,7 +229,7 @@ void draw_impulses(drawing *d, const panel_layout *l);
 
 // Quantity and unit of the strip, in two lines, to be freed; the panel must have an
 // impulse_label.
-char *impulse_strip_label(const figure_panel *panel);
+char *impulse_strip_label(const figure *fig, const figure_panel *panel);
 
 // --- legends: legend.c
 

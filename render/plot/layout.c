@@ -176,7 +176,7 @@ static double left_space(const drawing *d, const panel_layout *l)
                   LABEL_SPACE + widest_tick(d, &l->y, d->style.tick) + TICK_SPACE +
                   TICK_LENGTH;
     if (l->panel->impulse_count > 0 && l->panel->impulse_label != NULL) {
-        g_autofree char *label = impulse_strip_label(l->panel);
+        g_autofree char *label = impulse_strip_label(d->fig, l->panel);
         left = fmax(left, width_of(d, label, d->style.small) + TICK_SPACE + TICK_LENGTH);
     }
 

@@ -372,13 +372,20 @@ static void draw_upward_arrow(cairo_t *cr, double x, double base, double length)
     cairo_fill(cr);
 }
 
-// The size of the largest impulse of a panel; 0 without one.
-static double largest_impulse(const figure_panel *panel)
+// The size of the largest impulse of a panel, or of all panels where these have common
+// scales; 0 without one.
+static double largest_impulse(const figure *fig, const figure_panel *panel)
 {
     double largest = 0;
-    for (int i = 0; i < panel->impulse_count; i++) {
-        if (isfinite(panel->impulses[i].size)) {
-            largest = fmax(largest, fabs(panel->impulses[i].size));
+    for (int p = 0; p < fig->panel_count; p++) {
+        const figure_panel *of = &fig->panels[p];
+        if (of != panel && !fig->common_scales) {
+            continue;
+        }
+        for (int i = 0; i < of->impulse_count; i++) {
+            if (isfinite(of->impulses[i].size)) {
+                largest = fmax(largest, fabs(of->impulses[i].size));
+            }
         }
     }
     return largest;
@@ -386,19 +393,19 @@ static double largest_impulse(const figure_panel *panel)
 
 // The power of ten in whose units the impulses of a panel are given; 0 unless they are
 // small.
-static int impulse_exponent(const figure_panel *panel)
+static int impulse_exponent(const figure *fig, const figure_panel *panel)
 {
-    double largest = largest_impulse(panel);
+    double largest = largest_impulse(fig, panel);
     if (largest > 0 && largest < 1e-2) {
         return 3 * (int)floor(log10(largest) / 3);
     }
     return 0;
 }
 
-char *impulse_strip_label(const figure_panel *panel)
+char *impulse_strip_label(const figure *fig, const figure_panel *panel)
 {
     g_autofree char *unit =
-        axis_label_text(NULL, panel->impulse_unit, impulse_exponent(panel));
+        axis_label_text(NULL, panel->impulse_unit, impulse_exponent(fig, panel));
     return text_printf("%s\n%s", panel->impulse_label, unit);
 }
 
@@ -406,13 +413,16 @@ char *impulse_strip_label(const figure_panel *panel)
 
 enum { IMPULSES_LABELLED = 24 };
 
-// Whether a place for the label of an impulse is on the page, off the arrows of other
-// impulses and off the lines of marks.
+// Whether a place for the label of an impulse is above its column of panels or at the
+// right of the last, off the arrows of other impulses and off the lines of marks.
 static bool strip_is_free(const drawing *d, const panel_layout *l,
                           const figure_rect *place, int index)
 {
     const double left = place->x - 1, right = place->x + place->width + 1;
-    if (place->x < d->left || place->x + place->width > d->page.width - PAGE_MARGIN) {
+    const column_layout *c = &d->column[l->column];
+    const bool last = l->column == d->columns - 1;
+    const double end = last ? d->page.width - PAGE_MARGIN : c->right;
+    if (place->x < c->left || place->x + place->width > end) {
         return false;
     }
 
@@ -439,7 +449,7 @@ static void label_impulse(drawing *d, const panel_layout *l, int index, double b
 {
     const figure_impulse *p = &l->panel->impulses[index];
     g_autofree char *markup =
-        text_number(p->size / pow(10, impulse_exponent(l->panel)), 3);
+        text_number(p->size / pow(10, impulse_exponent(d->fig, l->panel)), 3);
     text_block t = figure_text_of(d, markup, d->style.small);
     const double width = text_measure(d->context, &t).width, height = height_of(d, t);
     double x = plane_x(&l->plane, p->x);
@@ -520,7 +530,7 @@ void draw_impulses(drawing *d, const panel_layout *l)
 {
     const figure_panel *panel = l->panel;
     const double base = l->strip_top + STRIP_HEIGHT - 1;
-    const double largest = largest_impulse(panel);
+    const double largest = largest_impulse(d->fig, panel);
     const double left = d->column[l->column].left, right = d->column[l->column].right;
     if (panel->impulse_count == 0) {
         return;
@@ -542,10 +552,10 @@ void draw_impulses(drawing *d, const panel_layout *l)
 
     // what they are, with their unit, at the left
     if (panel->impulse_label != NULL) {
-        g_autofree char *label = impulse_strip_label(panel);
+        g_autofree char *label = impulse_strip_label(d->fig, panel);
         text_block t = figure_text_of(d, label, d->style.small);
         t.align = TEXT_RIGHT;
-        if (impulse_exponent(panel) != 0) {
+        if (impulse_exponent(d->fig, panel) != 0) {
             t.leading = STRIP_LEADING;
         }
         draw_text(d, t, left - TICK_LENGTH - TICK_SPACE, base + 1.5, (anchor){1, 1},
