@@ -7,8 +7,9 @@
 #include "tests/plot_fixture.h"
 
 #include "render/plot/drawing.h"
-#include "render/plot/study_plot.h"
 #include "render/plot/run_style.h"
+#include "render/plot/study_plot.h"
+#include "src/study/sweep.h"
 #include "tests/colour_vision.h"
 
 static const double widths[] = {85, 180}; // [mm]
@@ -503,6 +504,41 @@ static linear_response loop_of(int kind, double complex *block)
         }
     }
     return r;
+}
+
+// The axis of every parameter that a sweep varies, in a column of a journal.
+TEST(every_axis_of_a_sweep_fits_a_column)
+{
+    static figure_report r;
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
+    double values[] = {1, 3, 2};
+    int drawn_axes = 0;
+    complaints = 0;
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        if (info->type != PARAMETER_REAL) {
+            continue;
+        }
+        const char *vary =
+            formatted("%s=%.17g:%.17g:3", info->path, info->minimum, info->maximum);
+        sweep varied;
+        fault f = {0};
+        const sweep_request request = {.vary = (char *[]){(char *)vary}, .vary_count = 1};
+        if (sweep_init(&varied, &s, &request, &f) != STATUS_OK) {
+            continue; // values that go with others only
+        }
+
+        owned_figure *made = sweep_figure_create(
+            &(sweep_picture){.sweep = &varied, .key = "peak_force_N", .values = values});
+        made->figure.width = widths[0];
+        SCOPED(artwork_finish) artwork drawn = artwork_of_owned(made);
+        cairo_surface_destroy(page_pixels(&drawn, SCALE, &r));
+        check_page(&drawn, &r, info->path, widths[0]);
+        sweep_finish(&varied);
+        drawn_axes++;
+    }
+    assert_int_equal(complaints, 0);
+    assert_true(drawn_axes > 60);
 }
 
 TEST(every_loop_can_be_read)
