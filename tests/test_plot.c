@@ -493,6 +493,30 @@ TEST(many_runs_become_small_multiples)
     owned_figure_destroy(t);
 }
 
+// What the runs share stands in the caption, what differs in the key; a parameter that
+// follows from another one (EI from k2) is no difference of its own.
+TEST(the_key_says_what_differs)
+{
+    fault f = {0};
+    opened_run *one = run_open("corrected/first-impact", NULL, &f);
+    opened_run *other = run_open("corrected/first-impact", "arm.k2=10", &f);
+    assert_true(one != NULL && other != NULL);
+    const trace_run runs[] = {{&one->scenario, &one->result, "soft", .rank = 1},
+                              {&other->scenario, &other->result, "stiff", .rank = 2}};
+    owned_figure *t = trace_figure_create("Runs", usual_panels, USUAL_PANELS, runs, 2);
+    const figure_series *key = t->figure.key->series;
+    g_autofree char *soft = text_plain(key[0].label), *stiff = text_plain(key[1].label);
+    assert_string_equal(soft, "soft: k2 = 4.92\u2009N·m/rad");
+    assert_string_equal(stiff, "stiff: k2 = 10\u2009N·m/rad");
+
+    g_autofree char *caption = text_plain(t->figure.caption);
+    assert_non_null(strstr(caption, "Both runs: corrected model, 2 links, rigid hub"));
+    assert_non_null(strstr(caption, "They differ in arm.k2 (k2)."));
+    owned_figure_destroy(t);
+    run_close(one);
+    run_close(other);
+}
+
 // ---- runs and the thesis's figures
 
 TEST(the_last_of_twenty_links_is_body_21)

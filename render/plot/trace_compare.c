@@ -85,19 +85,19 @@ int trace_compare_panels(const trace_panel *panels, int panel_count,
 
 // ---- what differs
 
-// Whether a parameter has one value in all runs.
-static bool is_shared(const comparison_figure *c, int parameter)
+// Whether a parameter that some run was given has another value in another run.
+static bool differs(const comparison_figure *c, int parameter)
 {
-    char first[512], other[512];
-    const trace_run *runs = c->of.runs;
-    parameter_format(&runs[0].scenario->parameters, parameter, first, sizeof first);
-    for (int i = 1; i < c->simulated; i++) {
-        parameter_format(&runs[i].scenario->parameters, parameter, other, sizeof other);
-        if (strcmp(first, other) != 0) {
-            return false;
-        }
+    char first[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
+    bool given = false, alike = true;
+    parameter_format(&c->of.runs[0].scenario->parameters, parameter, first, sizeof first);
+    for (int i = 0; i < c->simulated; i++) {
+        const parameters *p = &c->of.runs[i].scenario->parameters;
+        parameter_format(p, parameter, other, sizeof other);
+        given = given || p->set[parameter] != 0;
+        alike = alike && strcmp(first, other) == 0;
     }
-    return true;
+    return given && !alike;
 }
 
 // The parameters in which the runs differ, the first DIFFERENCES_NAMED of them in
@@ -106,7 +106,7 @@ static int find_differences(const comparison_figure *c, int found[DIFFERENCES_NA
 {
     int count = 0;
     for (int i = 0; i < parameter_count; i++) {
-        if (!is_shared(c, i)) {
+        if (differs(c, i)) {
             if (count < DIFFERENCES_NAMED) {
                 found[count] = i;
             }
@@ -116,29 +116,55 @@ static int find_differences(const comparison_figure *c, int found[DIFFERENCES_NA
     return count;
 }
 
-// A run for the key: its name, and its values where the runs differ in few parameters. A
-// word that the name has is not said again.
+// Whether a run's name says a parameter's value: by its path, as "arm.k2=10" does, or by
+// its word.
+static bool name_says(const char *name, const parameter_info *info, const char *value)
+{
+    return strstr(name, info->path) != NULL ||
+           (info->choices != NULL && strstr(name, value) != NULL);
+}
+
+// "<i>k</i><sub>2</sub> = 10 N·m/rad".
+static void add_value(GString *out, const parameter_info *info, const char *value)
+{
+    g_autofree char *escaped = text_escape(value), *unit = text_unit(info->unit);
+    g_autofree char *symbol = text_symbol(text_or(info->symbol, ""));
+    const char *name = info->symbol != NULL ? symbol : info->path;
+    const char *space = unit[0] == '\0' ? "" : "\u2009";
+    text_append(out, "%s = %s%s%s", name, escaped, space, unit);
+}
+
+// A run for the key: its name, and where the runs differ in few parameters its values
+// that the name does not say.
 static char *run_label(const comparison_figure *c, const trace_run *run)
 {
     int differ[DIFFERENCES_NAMED];
     const int count = find_differences(c, differ);
-    g_autofree char *name = text_escape(text_or(run->name, ""));
-    GString *out = g_string_new(name);
-    const char *before = ": ";
-
+    const char *name = text_or(run->name, ""), *before = ": ";
+    g_autofree char *escaped = text_escape(name);
+    GString *out = g_string_new(escaped);
     for (int i = 0; i < count && count <= DIFFERENCES_KEYED; i++) {
-        char value[128];
+        char value[PARAMETER_TEXT_SIZE];
         const parameter_info *info = &parameter_table[differ[i]];
         parameter_format(&run->scenario->parameters, differ[i], value, sizeof value);
-        if (strstr(out->str, value) != NULL && info->choices != NULL) {
-            continue;
+        if (!name_says(name, info, value)) {
+            g_string_append(out, before);
+            add_value(out, info, value);
+            before = ", ";
         }
-        g_autofree char *escaped = text_escape(value), *unit = text_unit(info->unit);
-        const char *space = unit[0] == '\0' ? "" : "\u2009";
-        text_append(out, "%s%s = %s%s%s", before, info->path, escaped, space, unit);
-        before = ", ";
     }
     return g_string_free(out, FALSE);
+}
+
+// Whether all runs have as many links.
+static bool have_one_length(const comparison_figure *c)
+{
+    const int links = c->of.runs[0].scenario->parameters.arm.links;
+    bool one = true;
+    for (int i = 1; i < c->simulated; i++) {
+        one = one && c->of.runs[i].scenario->parameters.arm.links == links;
+    }
+    return one;
 }
 
 // What the indices of the signals stand for: "Indices: 1 hub, 3 last link."
@@ -157,6 +183,9 @@ static void add_bodies(GString *out, const comparison_figure *c)
                 number = c->of.runs[0].scenario->parameters.arm.links + 1;
             }
             text_append(out, "%s%d %s", before, number, signal_body_name(body));
+            if (body == BODY_LAST_LINK && !have_one_length(c)) {
+                g_string_append(out, " of each run");
+            }
             before = ", ";
         }
     }
@@ -177,14 +206,19 @@ static char *comparison_caption(const comparison_figure *c)
     const int count = find_differences(c, differ);
     const char *before = " They differ in ";
     for (int i = 0; i < count && i < DIFFERENCES_NAMED; i++) {
-        text_append(out, "%s%s", before, parameter_table[differ[i]].path);
+        const parameter_info *info = &parameter_table[differ[i]];
+        text_append(out, "%s%s", before, info->path);
+        if (info->symbol != NULL) {
+            g_autofree char *symbol = text_symbol(info->symbol);
+            text_append(out, " (%s)", symbol);
+        }
         before = ", ";
         if (i + 2 == count) {
             before = " and ";
         }
     }
     if (count > DIFFERENCES_NAMED) {
-        text_append(out, " and %d more parameters", count - DIFFERENCES_NAMED);
+        text_append(out, " and %d more", count - DIFFERENCES_NAMED);
     }
     if (count > 0) {
         g_string_append_c(out, '.');
@@ -324,8 +358,8 @@ static void add_common_key(const comparison_figure *c)
         } else {
             add_key(key, entries,
                     (figure_series){.label = owned_figure_keep(o, run_label(c, run)),
-                                    .symbol = name,
-                                    .run = run->rank});
+                                    .run = run->rank,
+                                    .colour = run_style_of(run->rank).slot});
         }
     }
 
