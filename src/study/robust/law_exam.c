@@ -163,14 +163,18 @@ static exam_verdict judge_law_run(const drawn_case *c, double force, double open
     const double most_settling = v.separations > 0 ? MOST_SETTLING_LOSING : MOST_SETTLING;
 
     // what is not a number misses its bound, too
-    v.missed[EXAM_OVERSHOOT] = !(v.overshoot <= MOST_OVERSHOOT);
-    v.missed[EXAM_SETTLING] = !(v.settling <= most_settling);
-    v.missed[EXAM_ERROR] = !(fabs(v.error) <= MOST_ERROR);
-    v.missed[EXAM_LATENESS] = !(v.late <= MOST_LATENESS);
-    v.missed[EXAM_RUN] = s->status != STATUS_OK || s->inaccurate;
+    const double ratios[EXAM_BOUNDS] = {
+        [EXAM_OVERSHOOT] = v.overshoot / MOST_OVERSHOOT,
+        [EXAM_SETTLING] = v.settling / most_settling,
+        [EXAM_ERROR] = fabs(v.error) / MOST_ERROR,
+        [EXAM_LATENESS] = v.late / MOST_LATENESS,
+        [EXAM_RUN] = s->status != STATUS_OK || s->inaccurate ? HUGE_VAL : 0,
+    };
     v.within = true;
     for (int bound = 0; bound < EXAM_BOUNDS; bound++) {
+        v.missed[bound] = !(ratios[bound] <= 1);
         v.within = v.within && !v.missed[bound];
+        v.worst = isnan(ratios[bound]) ? HUGE_VAL : fmax(v.worst, ratios[bound]);
     }
     return v;
 }

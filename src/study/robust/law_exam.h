@@ -46,7 +46,8 @@ typedef struct exam_verdict {
     double separations; // from the wall
     double late;        // first contact over open-loop's
     bool missed[EXAM_BOUNDS];
-    bool within; // all of the bounds
+    bool within;  // all of the bounds
+    double worst; // largest ratio of a quantity to its bound, HUGE_VAL where it failed
 } exam_verdict;
 
 typedef struct law_exam {

@@ -65,8 +65,7 @@ static int check_exam_options(const arguments *a)
     return EXIT_DONE;
 }
 
-// Reads the commands of --force, or the scenario's own. Returns the exit status.
-static int read_forces(const arguments *a, const scenario *s, exam_request *asked)
+int read_exam_forces(const arguments *a, const scenario *s, exam_request *asked)
 {
     asked->force_count = a->forces.count;
     if (asked->force_count > EXAM_MOST_FORCES) {
@@ -106,7 +105,7 @@ int robust_exam(const arguments *a, const scenario *s, const int *laws, int law_
     memcpy(asked.laws, laws, (size_t)law_count * sizeof *laws);
     int code = check_exam_options(a);
     if (code == EXIT_DONE) {
-        code = read_forces(a, s, &asked);
+        code = read_exam_forces(a, s, &asked);
     }
     if (code != EXIT_DONE) {
         return code;

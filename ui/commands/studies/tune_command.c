@@ -10,10 +10,12 @@
 #include "src/base/whole_file.h"
 #include "src/study/linear/linear.h"
 #include "src/study/store/sweep_store.h"
+#include "src/study/robust/law_exam.h"
 #include "src/study/robust/tune.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 #include "ui/commands/results.h"
+#include "ui/commands/studies/tune_exam.h"
 
 // What is judged on draws that the search did not see: the values as given, those found,
 // and these with one number a tenth lower and higher, a whole one by one at least. What a
@@ -322,8 +324,15 @@ static tune_request request_of_tuning(const arguments *a, const scenario *s,
 // The command: reads what is asked for, and searches.
 static int tune_and_report(const arguments *a, scenario *s)
 {
+    if (a->varies.count > 0 && a->draw > 0) {
+        return tune_over_exam(a, s);
+    }
     if (a->varies.count == 0 || a->minimise == NULL) {
-        return complain("tune: expected --vary PATH=a:b and --minimise EXPR");
+        return complain(
+            "tune: expected --vary PATH=a:b, and --minimise EXPR or --draw N");
+    }
+    if (a->forces.count > 0) {
+        return complain("--force goes with --draw only");
     }
 
     SCOPED(robust_set_finish) robust_set set = {0};
@@ -346,8 +355,16 @@ static const option_row rows[] = {
     OPTION(TEXT, "subject", "EXPR<=X", "what has to hold; or >=", PLACE(subject)),
     OPTION(FILE, "over", "SET",
            "file of what is drawn for each run, a line PATH=a:b each", PLACE(over)),
-    OPTION(WHOLE, "runs", "N", "number of runs in all (4000 over a set, else 200)",
-           PLACE(runs), .low = 1, .high = TUNE_MOST_RUNS),
+    OPTION(WHOLE, "draw", "N",
+           "instead: cases of an exam as of robust, whose bounds the law shall keep",
+           PLACE(draw), .low = 1, .high = EXAM_MOST_CASES),
+    OPTION(NUMBERS, "force", "F",
+           "with --draw: a commanded force, may be repeated (the scenario's)",
+           PLACE(forces), .low = 0, .high = 1e6, .unit = "N"),
+    OPTION(
+        WHOLE, "runs", "N",
+        "number of runs in all (4000 over a set, else 200); with --draw of exams (400)",
+        PLACE(runs), .low = 1, .high = TUNE_MOST_RUNS),
     SEED_OPTION,
     JOBS_OPTION,
     DB_OPTION("keep every run in a database; go on where it ends"),
@@ -376,7 +393,11 @@ const command tune_command = {
         "number a tenth lower and\n"
         "higher (a whole one by one at least). The file of -o is whole at every instant; "
         "with --db the same command goes on where a search\n"
-        "was stopped. The exit status is 1 if no values meet --subject.\n",
+        "was stopped. The exit status is 1 if no values meet --subject.\n\n"
+        "With --draw N the numbers of the law are found on an exam (robust --draw): an "
+        "evolution strategy\nlooks for those with which the fewest runs of N cases miss "
+        "its bounds, and both are judged on 480\ncases that the search did not see. "
+        "Nothing is kept but -o.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options},
     .use = tune_and_report,
