@@ -381,42 +381,6 @@ static void add_own_key(const comparison_figure *c, int panel, const trace_run *
     p->key_above = true;
 }
 
-// ---- residuals
-
-// A last panel of what was measured less what each run has, for the first signal that has
-// data.
-static void add_residuals(const comparison_figure *c, const trace_run *measured)
-{
-    owned_figure *o = c->of.drawn;
-    const int last = o->figure.panel_count;
-    const trace *data = &measured->result->trace;
-    int signal = 0;
-    while (signal < c->signal_count &&
-           !trace_has(data, signal_index(c->signals[signal].signals[0]))) {
-        signal++;
-    }
-    if (signal == c->signal_count || last == FIGURE_PANELS) {
-        return;
-    }
-
-    // a run's points have its colour and a form of their own
-    static const marker_kind forms[RUNS_TOGETHER] = {MARKER_CIRCLE, MARKER_SQUARE,
-                                                     MARKER_TRIANGLE, MARKER_DIAMOND};
-    const int index = signal_index(c->signals[signal].signals[0]);
-    for (int i = 0; i < c->simulated; i++) {
-        const trace_run *run = &c->of.runs[i];
-        figure_series *s =
-            owned_figure_add(o, last,
-                             trace_difference(data, &run->result->trace, index, o));
-        s->name = owned_figure_printf(o, "residual %s", text_or(run->name, ""));
-        s->run = run->rank;
-        s->marker = forms[i % RUNS_TOGETHER];
-        s->no_line = true;
-    }
-    trace_residual_axis(&o->panels[last], index);
-    o->figure.panel_count++;
-}
-
 // ---- the whole
 
 // All runs in the panel of each signal, two columns of panels where there are many.
@@ -434,9 +398,7 @@ static void show_together(const comparison_figure *c)
 
     // their key, and data
     add_common_key(c);
-    for (int i = c->simulated; i < c->of.run_count; i++) {
-        add_residuals(c, &c->of.runs[i]);
-    }
+    trace_add_residuals(&c->of);
 }
 
 // The panel of a run's row that has the run's key: the first without a strip of impulses,

@@ -181,36 +181,6 @@ static void describe_trace_panel(const trace_figure *t, int index)
     }
 }
 
-// A panel of what was measured less what was computed, for the first signal that has
-// data.
-static void add_residuals(const trace_figure *t, const trace_run *measured)
-{
-    owned_figure *o = t->drawn;
-    const trace *data = &measured->result->trace;
-    const trace *computed = &t->runs[0].result->trace;
-
-    // the first panel with a measured signal
-    const int last = o->figure.panel_count;
-    int panel = 0;
-    while (panel < last && !trace_has(data, signal_index(t->panels[panel].signals[0]))) {
-        panel++;
-    }
-    if (panel == last || last == FIGURE_PANELS) {
-        return;
-    }
-
-    // points in a panel behind the others
-    const int index = signal_index(t->panels[panel].signals[0]);
-    figure_series *s =
-        owned_figure_add(o, last, trace_difference(data, computed, index, o));
-    s->name = "residual";
-    s->colour = SLOT_BLACK;
-    s->marker = MARKER_CIRCLE;
-    s->no_line = true;
-    trace_residual_axis(&o->panels[last], index);
-    o->figure.panel_count++;
-}
-
 // What is shaded: contact, or the controller's second mode by its name.
 static char *shading_text(const scenario *s, bool modes)
 {
@@ -253,11 +223,7 @@ owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
     for (int i = 0; i < panel_count; i++) {
         describe_trace_panel(&t, i);
     }
-    for (int run = 1; run < run_count; run++) {
-        if (runs[run].points) {
-            add_residuals(&t, &runs[run]);
-        }
-    }
+    trace_add_residuals(&t);
 
     // marks and shading
     trace_mark_events(o, &runs[0]);

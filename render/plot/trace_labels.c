@@ -99,13 +99,6 @@ figure_axis trace_signal_axis(const trace_figure *t, const trace_panel *from)
     return y;
 }
 
-void trace_residual_axis(figure_panel *panel, int index)
-{
-    panel->y = (figure_axis){"residual", "Residual", signal_table[index].unit, "Δ",
-                             .with_zero = true};
-    panel->weight = 0.6;
-}
-
 // A duration in µs, ms or s, whichever makes the number short.
 static char *duration_text(double seconds)
 {

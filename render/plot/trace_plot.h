@@ -34,6 +34,14 @@ typedef struct trace_run {
                  // run_style_of(rank), 1 to TRACE_RUNS
 } trace_run;
 
+// A figure of runs while it is made.
+typedef struct trace_figure {
+    owned_figure *drawn;
+    const trace_panel *panels;
+    const trace_run *runs;
+    int run_count;
+} trace_figure;
+
 // The scenario's title, and what was changed of what it speaks of. Free with g_free.
 char *scenario_title(const scenario *s);
 
@@ -57,6 +65,10 @@ double trace_value(const trace *t, int index, double time, size_t side);
 // its rows.
 figure_series trace_difference(const trace *of, const trace *less, int index,
                                owned_figure *o);
+
+// Adds a panel of measured data less the first run, or less each of runs side by side,
+// for the first signal that has data; nothing without data or without room.
+void trace_add_residuals(const trace_figure *t);
 
 // Shades a run's contact, or where the controller was in its second mode.
 void trace_shade(owned_figure *o, const trace *rows, bool modes);
@@ -114,14 +126,6 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
 
 // --- internal to these figures: curves, labels, marks and events
 
-// A figure of runs while it is made.
-typedef struct trace_figure {
-    owned_figure *drawn;
-    const trace_panel *panels;
-    const trace_run *runs;
-    int run_count;
-} trace_figure;
-
 // Whether a run has a signal of a panel to show: not the first link's where it equals the
 // hub's, and of data only what was measured: trace_series.c
 bool trace_shows(const trace_run *run, const trace_panel *panel, int index);
@@ -142,9 +146,8 @@ char *trace_series_label(const scenario *s, int index, bool joined);
 char *trace_series_symbol(const scenario *s, int index);
 
 // The vertical axis of a panel, named after its first signal, whose symbol names the
-// body; that of residuals of a signal.
+// body.
 figure_axis trace_signal_axis(const trace_figure *t, const trace_panel *from);
-void trace_residual_axis(figure_panel *panel, int index);
 
 // Model, links, drive and method as far as all runs share them, in one line without a
 // full stop, in lower case.

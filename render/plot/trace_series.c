@@ -260,6 +260,64 @@ figure_series trace_difference(const trace *of, const trace *less, int index,
 
 // ==== measured data
 
+// The first panel whose signal data have, or the number of panels.
+static int measured_panel(const trace_figure *t, const trace *data)
+{
+    const int count = t->drawn->figure.panel_count;
+    int panel = 0;
+    while (panel < count && !trace_has(data, signal_index(t->panels[panel].signals[0]))) {
+        panel++;
+    }
+    return panel;
+}
+
+// The points of data less a run; of runs side by side each has its colour and a form.
+static void add_residual(const trace_figure *t, int panel, const trace *data, int index,
+                         const trace_run *run)
+{
+    enum { FORMS = MARKER_DIAMOND };
+    figure_series *s =
+        owned_figure_add(t->drawn, panel,
+                         trace_difference(data, &run->result->trace, index, t->drawn));
+    s->name = "residual";
+    s->colour = SLOT_BLACK;
+    s->marker = MARKER_CIRCLE;
+    s->no_line = true;
+    if (run->rank > 0) {
+        s->name = owned_figure_printf(t->drawn, "residual %s", run->name);
+        s->run = run->rank;
+        s->marker = MARKER_CIRCLE + (run->rank - 1) % FORMS;
+    }
+}
+
+void trace_add_residuals(const trace_figure *t)
+{
+    const trace_run *measured = &t->runs[t->run_count - 1];
+    const int last = t->drawn->figure.panel_count;
+    if (!measured->points || last == FIGURE_PANELS) {
+        return;
+    }
+    const trace *data = &measured->result->trace;
+    const int panel = measured_panel(t, data);
+    if (panel == last) {
+        return;
+    }
+
+    // a panel behind the others
+    const int index = signal_index(t->panels[panel].signals[0]);
+    for (int i = 0; i < t->run_count; i++) {
+        const trace_run *run = &t->runs[i];
+        if (!run->points && (i == 0 || run->rank > 0)) {
+            add_residual(t, last, data, index, run);
+        }
+    }
+    t->drawn->panels[last].y =
+        (figure_axis){"residual", "Residual", signal_table[index].unit, "Δ",
+                      .with_zero = true};
+    t->drawn->panels[last].weight = 0.6;
+    t->drawn->figure.panel_count++;
+}
+
 // The signal that a column of measured data stands for: the signal of its name, or the
 // first one shown with the unit in its heading; -1 if there is none.
 static int signal_of(const csv_table *table, const char *column,
