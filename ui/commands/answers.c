@@ -9,6 +9,7 @@
 #include "src/tables/parameters.h"
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
+#include "ui/explorer/state/command_list.h"
 #include "ui/manual/search.h"
 
 enum { MOST_ANSWERS = 6, MOST_MEANINGS = 8 };
@@ -30,10 +31,15 @@ static search_entry section_entry(const void *context, int i)
 static search_entry parameter_entry(const void *context, int i)
 {
     (void)context;
-    static const char *texts[2];
+    static const char *texts[3];
+    static char unit[64];
     const parameter_info *p = &parameter_table[i];
     int count = 0;
     texts[count++] = p->description;
+    if (p->unit[0] != '\0') {
+        snprintf(unit, sizeof unit, "unit %s", p->unit);
+        texts[count++] = unit;
+    }
     if (p->choices != NULL) {
         texts[count++] = p->choices;
     }
@@ -95,7 +101,19 @@ static search_entry command_entry(const void *context, int i)
     return (search_entry){c->name, "command", texts, count};
 }
 
-enum { SECTIONS, PARAMETERS, QUANTITIES, SIGNALS, LAWS, COMMANDS, SOURCES };
+// A command of the terminal lab with its keys.
+static search_entry lab_entry(const void *context, int i)
+{
+    (void)context;
+    static char texts_of[2][256];
+    static const char *const texts[] = {texts_of[0], texts_of[1]};
+    const explorer_command *c = &explorer_command_table[i];
+    snprintf(texts_of[0], sizeof texts_of[0], "%s", c->help);
+    snprintf(texts_of[1], sizeof texts_of[1], "key %s", c->keys);
+    return (search_entry){c->name, "lab", texts, c->keys[0] != '\0' ? 2 : 1};
+}
+
+enum { SECTIONS, PARAMETERS, QUANTITIES, SIGNALS, LAWS, COMMANDS, LAB, SOURCES };
 
 static void list_sources(const command_list *all, search_source sources[SOURCES])
 {
@@ -104,6 +122,7 @@ static void list_sources(const command_list *all, search_source sources[SOURCES]
     sources[QUANTITIES] = (search_source){summary_count, quantity_entry};
     sources[SIGNALS] = (search_source){signal_count, signal_entry};
     sources[LAWS] = (search_source){LAW_COUNT, law_entry};
+    sources[LAB] = (search_source){explorer_command_count, lab_entry};
     sources[COMMANDS] = (search_source){all->count, command_entry, all};
 }
 
@@ -130,6 +149,8 @@ static void print_name(FILE *stream, const search_hit *hit, const search_entry *
     const char *unit = unit_of_hit(hit);
     if (hit->source == SECTIONS) {
         fprintf(stream, "%s, \"%s\"\n", manual_section_at(hit->index).page, e->title);
+    } else if (hit->source == LAB) {
+        fprintf(stream, "lab :%s\n", e->title);
     } else if (hit->source == COMMANDS) {
         fprintf(stream, "impactlab %s\n", e->title);
     } else if (unit[0] != '\0') {
@@ -150,6 +171,7 @@ static const struct {
                  " draws it"},
     [LAWS] = {"--set control.law=", " takes it, docs/reference/laws.md compares all"},
     [COMMANDS] = {"impactlab ", " --help"},
+    [LAB] = {"in the terminal lab; :", " by its name"},
 };
 
 // The first whole words of a text, as far as they fit a passage. Returns whether that is

@@ -147,7 +147,7 @@ const command help_command = {
     .help =
         "A QUESTION is some words, as in: impactlab help settling time. It is looked up "
         "in the pages of the\n"
-        "manual, the parameters, the quantities and signals of a run, and the commands; "
+        "manual, the parameters, quantities, signals, control laws and commands; "
         "the best hits are\n"
         "printed with the passage that fits and where to read on.\n",
     .operand_word = command_word,

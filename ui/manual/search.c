@@ -43,13 +43,13 @@ static const char give_points[] =
 // The best things, at most ?2, each with its best passage and the share of the question
 // that it has. A word counts by its best term; a thing by what it has, and up to half
 // as much more for what its best passage has. The share of a word is the most points that
-// it gives anything, of one that occurs nowhere the most that any word gives.
+// it gives anything; of one that occurs nowhere half as much again as any other gives.
 static const char best_things[] =
     "WITH term AS (SELECT thing, word, max(points) AS points FROM found "
     "GROUP BY thing, word), "
     "worth AS (SELECT word, max(points) AS points FROM term WHERE word >= 0 "
     "GROUP BY word), "
-    "whole AS (SELECT sum(points) + max(points) * ((SELECT count(DISTINCT word) "
+    "whole AS (SELECT sum(points) + 1.5 * max(points) * ((SELECT count(DISTINCT word) "
     "FROM asked WHERE word >= 0) - count(*)) AS points FROM worth), "
     "score AS (SELECT thing, sum(term.points) AS points, sum(worth.points) / "
     "(SELECT points FROM whole) AS share FROM term LEFT JOIN worth USING (word) "
@@ -70,7 +70,7 @@ static const char occurring[] = "SELECT 0, 0, 0, 1 FROM thing WHERE thing MATCH 
                                 "MATCH ?1 LIMIT ?2";
 
 // Weights of terms beside those of words, which are 1.
-static const double SYNONYM = 0.8, PAIR = 0.5, LITTLE_WORD = 0.1;
+static const double SYNONYM = 0.8, PAIR = 0.25, LITTLE_WORD = 0.1;
 
 typedef struct question_words {
     char words[MOST_WORDS][WORD_SIZE];
@@ -82,14 +82,15 @@ typedef struct question_words {
 static bool says_little(const char *word)
 {
     static const char little[] =
-        " a about all also am an and any are as at be been but by can could did do does "
-        "doesn don for from get give given go got had has have how i if in instead into "
-        "is isn it its just know let like ll look make many may me mean might much must "
-        "my need no not of off on one only or other our out over own possible really s "
-        "say see should show so some something still such t take tell than that the "
-        "their them then there these they thing this those to too under up us use used "
-        "using ve want was way we were what when where whether which while who why will "
-        "with without work would write you your ";
+        " a about add all also am an and any are as at be been between but by can "
+        "choose could did difference different do does doesn don for from get give "
+        "given go got had happen happens has have how i if in instead into is isn it "
+        "its just know let like ll look make many may me mean might much must my "
+        "need no not of off on one only or other our out over own pick possible "
+        "really s say see select should show so some something still such t take "
+        "tell than that the their them then there these they thing this those to too "
+        "under up us use used using ve want was way we were what when where whether "
+        "which while who why will with without work would write you your ";
     char between_blanks[WORD_SIZE + 2];
     snprintf(between_blanks, sizeof between_blanks, " %s ", word);
     return strstr(little, between_blanks) != NULL;
@@ -258,12 +259,24 @@ static void ask(sqlite3 *database, const char *sql, const char *term, int number
     loss_unless(code == SQLITE_DONE);
 }
 
+// Notes what a comparative compares, "soft" of "softer", which Porter's stems leave.
+static void ask_positive(sqlite3 *database, const char *word, int number)
+{
+    const size_t length = text_stem(word, "er");
+    char term[WORD_SIZE + 3];
+    if (length < strlen(word)) {
+        snprintf(term, sizeof term, "\"%.*s\"", (int)length, word);
+        ask(database, ask_term, term, number, SYNONYM);
+    }
+}
+
 // Notes the words of a question, with what they may mean and pairs of neighbours. Little
 // words count beside others only where these leave it open.
 static void ask_words(sqlite3 *database, question_words *q)
 {
+    const char *before = NULL;
     for (int i = 0; i < q->count; i++) {
-        char term[2 * WORD_SIZE + 4];
+        char term[2 * WORD_SIZE + 16];
         char *word = q->words[i];
         if (says_little(word) && !q->all_little) {
             snprintf(term, sizeof term, "\"%s\"", word);
@@ -276,12 +289,14 @@ static void ask_words(sqlite3 *database, question_words *q)
         snprintf(term, sizeof term, "\"%s\"", word);
         ask(database, ask_term, term, i, 1);
         ask(database, ask_synonyms, term, i, SYNONYM);
+        ask_positive(database, word, i);
 
-        // the word before it with this one
-        if (i > 0) {
-            snprintf(term, sizeof term, "\"%s %s\"", q->words[i - 1], word);
+        // near the word before it that says something
+        if (before != NULL) {
+            snprintf(term, sizeof term, "NEAR(\"%s\" \"%s\", 3)", before, word);
             ask(database, ask_term, term, -1 - i - MOST_WORDS, PAIR);
         }
+        before = word;
     }
 }
 
