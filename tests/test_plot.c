@@ -236,6 +236,48 @@ TEST(far_away_points_are_clipped)
     assert_int_equal(coloured_pixels(image, 2, above), 0);
 }
 
+// Whatever is asked for, an inset enlarges twice or more, or the figure fails: so does
+// one of its own, which is left out instead.
+TEST(an_inset_enlarges_at_least_twice)
+{
+    static figure_report r;
+    int shown = 0, refused = 0, left_out = 0;
+    for (EACH_OF(double, width, 85, 120, 180, 300)) {
+        for (double length = 0.02; length < 0.5; length *= 1.5) {
+            for (int asked = 0; asked < 2; asked++) {
+                SYNTHETIC(s, run_panels, 2);
+                s.plot->figure.width = *width;
+                s.plot->panels[0].zoom_from = 0.31;
+                s.plot->panels[0].zoom_to = 0.31 + length;
+                s.plot->panels[0].zoom_asked = asked == 1;
+                SCOPED(artwork_finish) artwork a = artwork_of_figure(&s.plot->figure);
+                fault f = {0};
+                cairo_surface_t *surface =
+                    cairo_recording_surface_create(CAIRO_CONTENT_COLOR, NULL);
+                cairo_t *cr = cairo_create(surface);
+                const status code = artwork_paint(&a, cr, &r, &f);
+                cairo_destroy(cr);
+                cairo_surface_destroy(surface);
+                if (code != STATUS_OK) {
+                    assert_int_equal(code, STATUS_BAD_ARGUMENT);
+                    assert_non_null(strstr(f.text, "expected a shorter stretch"));
+                    assert_int_equal(asked, 1);
+                    refused++;
+                } else if (r.insets[0].width > 0) {
+                    // the inset with its labels is larger than what it shows
+                    const double range = r.ranges[0].x_high - r.ranges[0].x_low;
+                    assert_true(r.insets[0].width / length >=
+                                2 * r.panels[0].width / range);
+                    shown++;
+                } else {
+                    left_out++;
+                }
+            }
+        }
+    }
+    assert_true(shown > 8 && refused > 4 && left_out > 4);
+}
+
 TEST(legend_and_inset_keep_off_the_data)
 {
     static figure_report with, without;

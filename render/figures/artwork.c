@@ -410,6 +410,8 @@ void figure_take_range(figure *fig, const figure_options *o)
         fig->x.low = o->from;
         fig->x.high = o->to;
     }
+    fig->zoom_from = o->zoom.from;
+    fig->zoom_to = o->zoom.to;
 }
 
 // A figure that shows no recorded signals.

@@ -14,7 +14,8 @@ typedef struct figure_options {
     const char
         *signals;    // recorded signals to show instead of the usual ones, NULL for those
     double from, to; // ends of the horizontal axis; from >= to: automatic
-    const char *latex; // file for the figure environment, NULL for none
+    figure_interval zoom; // stretch of the first panel in an inset; empty: none
+    const char *latex;    // file for the figure environment, NULL for none
     const char
         *command; // command that makes the picture, for its metadata; NULL if not known
 } figure_options;

@@ -160,6 +160,8 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
              STATUS_BAD_ARGUMENT,
              "%s shows no recorded signals that %s could choose or lie over", which->id,
              text_or(o->overlay, o->signals));
+    FAULT_IF(which->open != NULL && o->zoom.from < o->zoom.to, f, STATUS_BAD_ARGUMENT,
+             "%s shows no recorded signals that --zoom could enlarge", which->id);
     g_autofree char *title = numbered_title(which);
     const figure_order order = {which, title, o, NULL};
     if (which->open != NULL) {

@@ -103,6 +103,9 @@ static void complete_panel(recipe_context *c, const tree_node *node, void *into)
     recipe_panel *p = into;
     const recipe *r = c->recipe;
 
+    // an inset that is named finds a place, or there is no figure
+    p->shown.zoom_asked = true;
+
     // nothing named: all there is
     const bool all = p->source_count == 0 && !p->compared;
     for (int i = 0; all && i < r->source_count; i++) {
@@ -150,6 +153,7 @@ static const recipe_form panels = {
              FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, shown.y.with_zero),
              FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
              PAIR_KEY("range", recipe_panel, shown.y.low, shown.y.high),
+             PAIR_KEY("inset", recipe_panel, shown.zoom_from, shown.zoom_to),
              ITEMS_KEY("notes", &notes, recipe_panel, notes, shown.note_count)},
     .holder = "a figure",
     .things = "panels",

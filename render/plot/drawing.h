@@ -244,6 +244,8 @@ double common_legend(drawing *d, bool draw);
 
 void place_inset(const drawing *d, panel_layout *l, placement *grid);
 void draw_inset(drawing *d, const panel_layout *l);
+// STATUS_BAD_ARGUMENT where an inset that was asked for found no place.
+status check_inset(const drawing *d, const panel_layout *l, fault *f);
 
 // --- contour lines of values over a grid: map.c
 

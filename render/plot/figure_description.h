@@ -151,7 +151,8 @@ typedef struct figure_panel {
     const char *impulse_unit;
     double weight; // share of the height, 0 counts as 1
     double zoom_from,
-        zoom_to; // range of x shown once more in an inset; from >= to: no inset
+        zoom_to;     // range of x shown once more in an inset; from >= to: no inset
+    bool zoom_asked; // an inset that finds no place fails; else it is left out
     // without the legend that two or more curves have: inside the panel where there are
     // no data, otherwise in a row above
     bool keyless;
@@ -178,11 +179,12 @@ typedef struct figure {
     double width, height; // of the page [mm]; 0: 170 wide, as high as the panels need
     double dpi;           // of a PNG; 0: 200
     figure_theme theme;
-    const char *font;   // family; NULL: the default
-    double letters;     // size of labels [pt]; 0: 8
-    bool bare;          // without title and caption
-    bool transparent;   // without a background
-    bool equal_axes;    // a unit is as long on the one axis as on the other; both linear
+    const char *font; // family; NULL: the default
+    double letters;   // size of labels [pt]; 0: 8
+    bool bare;        // without title and caption
+    bool transparent; // without a background
+    bool equal_axes;  // a unit is as long on the one axis as on the other; both linear
+    double zoom_from, zoom_to; // the same of the first panel, asked for
     bool shared_y;      // all panels have one vertical axis, labelled in the first column
     bool common_scales; // panels of one quantity have one vertical range
     const char *parameters; // plain, for the file's metadata

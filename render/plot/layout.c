@@ -584,5 +584,8 @@ status layout_figure(drawing *d, fault *f)
         again = fill_panels(d, grid);
     }
     share_busy_lines(d);
+    for (int i = 0; i < fig->panel_count; i++) {
+        TRY(check_inset(d, &d->panels[i], f));
+    }
     return STATUS_OK;
 }

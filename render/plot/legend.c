@@ -82,10 +82,11 @@ static double placement_find(const placement *g, double width, double height,
 
 // ==== the inset
 
-#define INSET_ROOM 0.1 // of the data's range, kept free above and below them
+#define INSET_ROOM   0.1 // of the data's range, kept free above and below them
+#define LEAST_LARGER 2.0 // times that an inset enlarges the horizontal axis
 
 // Lays out the inset's axes within its outer rectangle: ranges, ticks and the box.
-static void divide_inset(const drawing *d, panel_layout *l)
+static void divide_inset(const drawing *d, panel_layout *l, const figure_interval *zoom)
 {
     const figure_panel *panel = l->panel;
     plane *p = &l->inset_plane;
@@ -93,8 +94,8 @@ static void divide_inset(const drawing *d, panel_layout *l)
 
     // the enlarged interval of x, and the range of all y in it
     p->x = scale_empty(d->x.scale.kind);
-    scale_include(&p->x, panel->zoom_from);
-    scale_include(&p->x, panel->zoom_to);
+    scale_include(&p->x, zoom->from);
+    scale_include(&p->x, zoom->to);
     p->y = scale_empty(l->plane.y.kind);
     for (int i = 0; i < panel->series_count; i++) {
         series_include_y(&panel->series[i], &p->x, &p->y);
@@ -125,17 +126,35 @@ static void divide_inset(const drawing *d, panel_layout *l)
                            l->inset.height - 3 - line - TICK_SPACE - 2};
 }
 
+// How many times the inset enlarges the horizontal axis.
+static double times_larger(const panel_layout *l)
+{
+    const plane *small = &l->inset_plane, *whole = &l->plane;
+    return small->box.width / (small->x.high - small->x.low) *
+           (whole->x.high - whole->x.low) / whole->box.width;
+}
+
+// The stretch of a panel's inset; empty where it has none.
+static figure_interval stretch_of_inset(const drawing *d, const panel_layout *l)
+{
+    const figure *fig = d->fig;
+    if (l == d->panels && fig->zoom_from < fig->zoom_to) {
+        return (figure_interval){fig->zoom_from, fig->zoom_to};
+    }
+    return (figure_interval){l->panel->zoom_from, l->panel->zoom_to};
+}
+
 // Places the inset where it covers no curve, in the largest of three sizes that fits. It
-// is left out if none does, or if it would be too small to read.
+// is left out if none does, or if it would be too small to read or to enlarge.
 void place_inset(const drawing *d, panel_layout *l, placement *grid)
 {
     static const double scales[] = {1, 0.85, 0.7};
-    const figure_panel *panel = l->panel;
     const figure_rect *box = &l->plane.box;
+    const figure_interval zoom = stretch_of_inset(d, l);
     l->inset = (figure_rect){0};
 
     // nothing to enlarge
-    if (!(panel->zoom_from < panel->zoom_to)) {
+    if (!(zoom.from < zoom.to) || l->panel->map != NULL) {
         return;
     }
 
@@ -149,11 +168,28 @@ void place_inset(const drawing *d, panel_layout *l, placement *grid)
         }
         if (placement_find(grid, width, height, 3, &found) < INK_CURVE) {
             l->inset = found;
-            divide_inset(d, l);
+            divide_inset(d, l, &zoom);
+            if (!(times_larger(l) >= LEAST_LARGER)) {
+                l->inset = (figure_rect){0};
+                return;
+            }
             placement_block(grid, found, INK_CURVE);
             return;
         }
     }
+}
+
+// An inset that was asked for is there.
+status check_inset(const drawing *d, const panel_layout *l, fault *f)
+{
+    const bool asked =
+        l->panel->zoom_asked || (l == d->panels && d->fig->zoom_from < d->fig->zoom_to);
+    const figure_interval zoom = stretch_of_inset(d, l);
+    FAULT_IF(asked && zoom.from < zoom.to && l->inset.width <= 0, f, STATUS_BAD_ARGUMENT,
+             "an inset from %g to %g finds no place where it enlarges %g times, expected "
+             "a shorter stretch or a larger page",
+             zoom.from, zoom.to, LEAST_LARGER);
+    return STATUS_OK;
 }
 
 // Draws the inset as a small panel, and a frame round the part that it enlarges.

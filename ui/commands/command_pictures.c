@@ -68,6 +68,22 @@ static int read_axis_range(const arguments *a, figure_options *o)
     return EXIT_DONE;
 }
 
+// Reads --zoom. Returns the exit status.
+static int read_zoom(const arguments *a, figure_options *o)
+{
+    const char *rest;
+    if (a->zoom == NULL) {
+        return EXIT_DONE;
+    }
+    const bool whole = decimal_read(a->zoom, &o->zoom.from, &rest) && *rest == ':' &&
+                       decimal_read(rest + 1, &o->zoom.to, &rest) && *rest == '\0';
+    if (!whole || !(o->zoom.from < o->zoom.to)) {
+        return complain("--zoom %s: expected A:B, where the stretch begins and ends",
+                        a->zoom);
+    }
+    return EXIT_DONE;
+}
+
 int read_picture_options(const arguments *a, figure_options *o)
 {
     *o = (figure_options){.look = {.width = a->width,
@@ -84,6 +100,10 @@ int read_picture_options(const arguments *a, figure_options *o)
 
     // what may be wrong
     int ended = read_theme(a, &o->look.theme);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    ended = read_zoom(a, o);
     if (ended != EXIT_DONE) {
         return ended;
     }

@@ -70,6 +70,8 @@ static const option_row page_rows[] = {
            .low = -1e9, .high = 1e9, .initial = (double)NAN),
     OPTION(NUMBER, "to", "X", "where it ends", PLACE(to), .low = -1e9, .high = 1e9,
            .initial = (double)NAN),
+    OPTION(TEXT, "zoom", "A:B", "this stretch of the first panel, larger, in an inset",
+           PLACE(zoom)),
     OPTION(RESULT, "latex", "FILE.tex",
            "write the figure environment with caption and label, for an SVG with a PDF",
            PLACE(latex)),

@@ -153,7 +153,7 @@ typedef struct arguments {
     double width, height; // of a page [mm]; 0 if not given
     double font_size;     // of labels [pt]; 0 if not given
     double from, to;      // ends of the horizontal axis; NaN if not given
-    const char *font, *signals, *latex;
+    const char *font, *signals, *latex, *zoom;
     char *command_line;   // without paths that are written to; owned
     double dpi;           // of a PNG; 0 if not given
     const char *overlay;  // CSV
