@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "render/plot/axis.h"
+#include "render/plot/run_style.h"
 #include "src/base/json.h"
 #include "src/base/shipped.h"
 #include "src/base/text_stream.h"
@@ -220,10 +222,13 @@ static status write_pdf(const report_content *r, const char *path, fault *f)
 
 // ==== the web page
 
-// Style and script, report_css and report_js: made of the files of these names by
-// embed.py.
+// Style and script, report_css and report_js, and those of uPlot, which draws what is
+// zoomed, with its licence: made of the files of these names by embed.py.
 #include "render/figures/report.css.inc"
 #include "render/figures/report.js.inc"
+#include "render/figures/uPlot.LICENSE.inc"
+#include "render/figures/uPlot.iife.min.js.inc"
+#include "render/figures/uPlot.min.css.inc"
 
 #define SCREEN_DPI 130.0
 
@@ -234,17 +239,18 @@ static void add_head(const report_content *r, GString *html)
         html,
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>%s</title>\n"
-        "<style>\n",
-        r->heading);
+        "<!-- uPlot, which draws what is zoomed:\n%s-->\n<style>\n",
+        r->heading, uPlot_LICENSE);
+    g_string_append(html, uPlot_min_css);
     g_string_append(html, report_css);
     text_append(
         html,
         "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the "
         "thesis's model with its errors, <q>corrected</q> the model derived again "
         "from mechanics.</p>\n"
-        "<p class=\"note\">Point at a curve for its values; Ctrl or Shift and "
-        "the wheel zoom, dragging moves, a double click restores the view; the "
-        "buttons hide curves.</p>\n",
+        "<p class=\"note\" id=\"hint\" hidden><q>Zoom and read values</q> under a figure "
+        "draws its curves from their data: drag across a stretch of the axis to see it "
+        "alone, point or tap for values; every step has a button, too.</p>\n",
         r->heading, r->preface);
 }
 
@@ -278,46 +284,123 @@ static json_t *plain_json(const char *markup)
     return json_text(plain);
 }
 
-// Colour, pattern and name of the curves of a panel; points alone are no curve.
+// Values as base64 of little-endian numbers of 32 bits; what an axis cannot show is NaN.
+static json_t *packed_json(const figure_series *s,
+                           double (*value)(const figure_series *, size_t))
+{
+    g_autofree float *values = g_new(float, s->count + 1);
+    for (size_t i = 0; i < s->count; i++) {
+        values[i] = (float)value(s, i);
+    }
+    g_autofree char *text =
+        g_base64_encode((const guchar *)values, s->count * sizeof values[0]);
+    return json_text(text);
+}
+
+// A colour as three bytes.
+static json_t *ink_json(const figure_series *s, figure_theme theme, int place)
+{
+    colour c = palette_series(theme, s->colour, place);
+    if (s->run == RUN_BEHIND) {
+        c = palette_of(theme)->mark;
+    } else if (s->run > 0) {
+        c = run_ink(theme, s->run);
+    }
+    const double bytes[] = {round(255 * c.red), round(255 * c.green),
+                            round(255 * c.blue)};
+    return json_numbers(bytes, 3);
+}
+
+// The line style of a series as the figure has it.
+static line_style style_of_series(const figure_panel *panel, int index)
+{
+    const int run = panel->series[index].run;
+    if (run == RUN_BEHIND) {
+        return LINE_SOLID;
+    }
+    if (run > 0) {
+        return run_style_of(run).dash;
+    }
+    return untaken_style(panel->series, index);
+}
+
+// True if both have the same numbers on the horizontal axis.
+static bool same_times(const figure_series *a, const figure_series *b)
+{
+    bool same = a->count == b->count;
+    for (size_t i = 0; same && i < a->count; i++) {
+        same = series_x(a, i) == series_x(b, i);
+    }
+    return same;
+}
+
+// Name, look and values of the series of a panel. Without `x` a series has that of the
+// one before it.
 static json_t *series_json(const figure_panel *panel)
 {
     json_t *all = json_array();
     for (int i = 0; i < panel->series_count; i++) {
         const figure_series *s = &panel->series[i];
-        if (!s->no_line) {
-            // in bytes, for the script that compares it with the strokes of the drawing
-            const colour c = palette_series(THEME_COLOUR, s->colour, i);
-            const double ink[] = {round(255 * c.red), round(255 * c.green),
-                                  round(255 * c.blue)};
-            json_add(all, json_of("ink:o dashed:b label:o", json_numbers(ink, 3),
-                                  s->secondary || s->style != LINE_SOLID,
-                                  plain_json(text_or(s->label, s->name))));
+        json_t *one =
+            json_of("label:o light:o dark:o style:i line:b points:b y:o",
+                    plain_json(text_or(s->label, s->name)), ink_json(s, THEME_COLOUR, i),
+                    ink_json(s, THEME_DARK, i), (int)style_of_series(panel, i),
+                    !s->no_line, s->marker != MARKER_NONE, packed_json(s, series_y));
+        if (i == 0 || !same_times(s, s - 1)) {
+            json_members(one, "x:o", packed_json(s, series_x));
         }
+        json_add(all, one);
     }
     return all;
 }
 
-// Place, ranges and curves of a panel.
+// Names, ranges and series of a panel.
 static json_t *panel_json(const figure *fig, const figure_panel *panel,
-                          const figure_rect *box, const figure_range *range)
+                          const figure_range *range)
 {
-    const double place[] = {box->x, box->y, box->width, box->height};
     const double x[] = {range->x_low, range->x_high};
     const double y[] = {range->y_low, range->y_high};
-    return json_of("box:o x:o y:o xlog:b ylog:b xname:o unit:o series:o",
-                   json_numbers(place, 4), json_numbers(x, 2), json_numbers(y, 2),
-                   range->x_logarithmic, range->y_logarithmic, plain_json(fig->x.name),
+    return json_of("x:o y:o xlog:b ylog:b xname:o xunit:o name:o unit:o series:o",
+                   json_numbers(x, 2), json_numbers(y, 2), range->x_logarithmic,
+                   range->y_logarithmic, plain_json(text_or(fig->x.label, fig->x.name)),
+                   plain_json(fig->x.unit),
+                   plain_json(text_or(panel->y.label, panel->y.name)),
                    plain_json(panel->y.unit), series_json(panel));
 }
 
-// Places, ranges and curves of all panels as JSON in an attribute, for the script: to
-// turn a place into values.
+// True if a series is a function of the horizontal axis, in ascending order.
+static bool ascends(const figure_series *s)
+{
+    for (size_t i = 1; i < s->count; i++) {
+        if (!(series_x(s, i) >= series_x(s, i - 1))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// True if the script can draw the figure from its data: curves over one axis, no maps and
+// no curves in a plane.
+static bool is_of_curves(const figure *fig)
+{
+    bool curves = !fig->equal_axes;
+    for (int i = 0; i < fig->panel_count; i++) {
+        const figure_panel *panel = &fig->panels[i];
+        curves = curves && panel->map == NULL && panel->series_count > 0;
+        for (int k = 0; curves && k < panel->series_count; k++) {
+            curves = panel->series[k].shade == NULL && ascends(&panel->series[k]);
+        }
+    }
+    return curves;
+}
+
+// The data of all panels as JSON in an attribute, from which the script draws what is
+// zoomed.
 static void add_panels(GString *html, const figure *fig, const figure_report *seen)
 {
     json_t *all = json_array();
     for (int i = 0; i < seen->panel_count; i++) {
-        json_add(all,
-                 panel_json(fig, &fig->panels[i], &seen->panels[i], &seen->ranges[i]));
+        json_add(all, panel_json(fig, &fig->panels[i], &seen->ranges[i]));
     }
 
     // as one attribute
@@ -354,11 +437,11 @@ static status add_figure(GString *html, const report_item *item, guint index,
         if (svg == NULL) {
             return f->code;
         }
-        if (drawn.plotted != NULL) {
+        if (drawn.plotted != NULL && is_of_curves(drawn.plotted)) {
             add_panels(html, drawn.plotted, seen);
         }
         g_autofree char *small = svg_for_page(svg, prefix, letters);
-        text_append(html, ">\n%s", small);
+        text_append(html, ">\n<div class=\"drawing\">\n%s</div>\n", small);
     }
     g_string_append(html, "</figure>\n");
     return STATUS_OK;
@@ -374,7 +457,9 @@ static status add_section(const report_content *r, guint index, GString *html,
 
     // the item itself
     if (item->drawn.table != NULL) {
+        g_string_append(html, "<div class=\"scrolls\" tabindex=\"0\">\n");
         table_add_html(item->drawn.table, html);
+        g_string_append(html, "</div>\n");
     } else {
         TRY(add_figure(html, item, index, letters, f));
     }
@@ -415,6 +500,7 @@ static status write_html(const report_content *r, const char *path, fault *f)
         }
     }
     g_string_append(html, "<script>\n");
+    g_string_append(html, uPlot_iife_min_js);
     g_string_append(html, report_js);
     g_string_append(html, "</script>\n</body>\n</html>\n");
 

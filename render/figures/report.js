@@ -1,107 +1,115 @@
-// Curves in the figures of a report: values at the pointer, zoom, and buttons that hide curves.
-// Lines that are comments alone are left out of the page.
+// The figures of a report drawn again from their data by uPlot: zoom, values at the pointer, and
+// buttons that hide curves. Lines that are comments alone are left out of the page.
 'use strict';
-for (const fig of document.querySelectorAll('figure[data-panels]')) {
-  const svg = fig.querySelector('svg'), panels = JSON.parse(fig.dataset.panels);
-  const whole = svg.getAttribute('viewBox').split(' ').map(Number);
-  let view = whole.slice();
-  // the points of a path on the page, gaps as NaN
-  const points = p => {
-    const out = [], d = p.getAttribute('d').match(/[A-Za-z]|-?\d*\.?\d+/g) || [];
-    for (let i = 0, c = ''; i < d.length; i += 2) {
-      while (i < d.length && /[A-Za-z]/.test(d[i])) { c = d[i++]; }
-      if (c === 'M') { out.push([NaN, NaN]); }
-      if (i < d.length) { out.push([+d[i], +d[i + 1]]); }
-    }
-    return out;
+// numbers of 32 bits in base64; NaN, a gap, as null
+const unpack = text => {
+  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0)), view = new DataView(bytes.buffer);
+  return Array.from({length: bytes.length / 4}, (_, i) => {
+    const v = view.getFloat32(4 * i, true);
+    return Number.isFinite(v) ? v : null;
+  });
+};
+// the range [low, high] narrowed k times about the share `at` of it, kept within `whole`
+const narrowed = (range, at, k, whole, log) => {
+  const to = log ? Math.log : v => v, back = log ? Math.exp : v => v;
+  const [a, b] = range.map(to), [least, most] = whole.map(to);
+  const width = Math.min((b - a) / k, most - least);
+  const low = Math.min(Math.max(a + at * (b - a - width), least), most - width);
+  return [back(low), back(low + width)];
+};
+const dashes = [[], [5, 2.2], [1.2, 1.8], [7, 2, 1.4, 2]];
+const darkness = typeof matchMedia === 'function' && matchMedia('(prefers-color-scheme: dark)');
+const button = (row, text, act) => {
+  const b = document.createElement('button');
+  b.type = 'button';
+  b.textContent = text;
+  b.onclick = () => act(b);
+  row.append(b);
+  return b;
+};
+// one panel as a chart; `moved` is told a new range of the common axis
+const chartOf = (panel, place, hidden, moved) => {
+  let x;
+  const tables = panel.series.map(s => [x = s.x ? unpack(s.x) : x, unpack(s.y)]);
+  const data = uPlot.join(tables.map(([xs, ys]) => {
+    // a common axis has each value once: the last of those at a jump
+    const last = xs.map((v, i) => v !== null && v !== xs[i + 1]);
+    return [xs.filter((_, i) => last[i]), ys.filter((_, i) => last[i])];
+  }));
+  const css = name => getComputedStyle(document.body).getPropertyValue(name).trim();
+  const named = (name, unit) => name + (unit ? ' in ' + unit : '');
+  const axis = label => ({label, stroke: css('--text'), grid: {stroke: css('--line'), width: 1},
+    ticks: {stroke: css('--line'), width: 1}, font: '12px sans-serif', labelFont: '12px sans-serif'});
+  const digits = (u, v) => v == null ? '' : String(+v.toPrecision(5));
+  return new uPlot({
+    width: place.clientWidth, height: 260, cursor: {sync: {key: place.id}, drag: {x: true, y: false}},
+    legend: {live: true},
+    scales: {x: {time: false, distr: panel.xlog ? 3 : 1, range: () => place.range},
+      y: {distr: panel.ylog ? 3 : 1, range: () => panel.y}},
+    axes: [axis(named(panel.xname, panel.xunit)), {...axis(named(panel.name, panel.unit)), size: 64}],
+    series: [{label: panel.xname, value: digits}, ...panel.series.map(s => {
+      const ink = `rgb(${darkness.matches ? s.dark : s.light})`;
+      return {label: s.label, stroke: ink, width: s.line ? 1.6 : 0, show: !hidden.has(s.label),
+        dash: dashes[s.style].map(v => 1.6 * v), points: {show: s.points, size: 6, stroke: ink, fill: ink},
+        value: digits};
+    })],
+    hooks: {setSelect: [u => u.select.width > 3 && moved([u.posToVal(u.select.left, 'x'),
+      u.posToVal(u.select.left + u.select.width, 'x')])]},
+  }, data, place);
+};
+// a drawing, and below it the buttons that put charts into its place and back
+const explore = (figure, index) => {
+  const panels = JSON.parse(figure.dataset.panels), drawing = figure.querySelector('.drawing');
+  const row = document.createElement('div'), place = document.createElement('div'), hidden = new Set();
+  const log = panels[0].xlog, whole = panels[0].x;
+  let charts = [];
+  row.className = 'buttons';
+  place.className = 'charts';
+  place.id = 'charts-' + index;
+  figure.append(place, row);
+  const close = () => { charts.forEach(u => u.destroy()); charts = []; };
+  const show = range => {
+    place.range = range;
+    charts.forEach(u => {
+      u.setSelect({left: 0, width: 0, top: 0, height: 0}, false);
+      u.setScale('x', {min: range[0], max: range[1]});
+    });
   };
-  const near = (a, b) => a.every((v, i) => Math.abs(v - b[i]) < 4);
-  const inkOf = p => (getComputedStyle(p).stroke.match(/[\d.]+/g) || []).map(Number);
-  const lines = [...svg.querySelectorAll('path')].filter(
-    p => getComputedStyle(p).fill === 'none' && /M/.test(p.getAttribute('d')));
-  for (const panel of panels) {
-    const [x, y, w, h] = panel.box;
-    for (const s of panel.series) {
-      s.paths = lines.filter(p => {
-        const b = p.getBBox(), ink = inkOf(p);
-        return ink.length > 2 && near(ink.slice(0, 3), s.ink) && b.width > 0.05 * w &&
-          b.x > x - 6 && b.x + b.width < x + w + 6 && b.y > y - 6 && b.y + b.height < y + h + 6 &&
-          (getComputedStyle(p).strokeDasharray === 'none') !== s.dashed;
-      });
-      s.points = s.paths.filter(p => points(p).length > 3).flatMap(points);
-    }
-  }
-  // a button for each curve, by its name in all panels
-  const row = document.createElement('div');
-  row.className = 'curves';
+  const draw = () => { close(); charts = panels.map(p => chartOf(p, place, hidden, show)); };
+  const open = button(row, 'Zoom and read values', b => {
+    const on = figure.classList.toggle('explored');
+    b.textContent = on ? 'Back to the drawing' : 'Zoom and read values';
+    steps.hidden = !on;
+    place.range = whole;
+    if (on) { draw(); } else { close(); }
+  });
+  const steps = document.createElement('span');
+  steps.hidden = true;
+  row.append(steps);
+  const step = (name, at, k) => button(steps, name, () => show(narrowed(place.range, at, k, whole, log)));
+  step('Zoom in', 0.5, 2);
+  step('Zoom out', 0.5, 0.5);
+  const shift = (name, by) => button(steps, name, () => {
+    const to = log ? Math.log : v => v, back = log ? Math.exp : v => v;
+    const [a, b] = place.range.map(to), d = by * (b - a);
+    show(narrowed([back(a + d), back(b + d)], 0, 1, whole, log));
+  });
+  shift('Earlier', -0.5);
+  shift('Later', 0.5);
+  button(steps, 'Whole range', () => show(whole));
   const names = [...new Set(panels.flatMap(p => p.series.map(s => s.label)))];
   for (const name of names.length > 1 ? names : []) {
-    const button = document.createElement('button');
-    button.textContent = name;
-    button.type = 'button';
-    button.setAttribute('aria-pressed', 'true');
-    button.onclick = () => {
-      const on = button.getAttribute('aria-pressed') !== 'true';
-      button.setAttribute('aria-pressed', on);
-      for (const s of panels.flatMap(p => p.series).filter(s => s.label === name)) {
-        s.off = !on;
-        s.paths.forEach(p => p.style.opacity = on ? '' : '0.06');
-      }
-    };
-    row.append(button);
+    const toggle = button(steps, 'Hide ' + name, b => {
+      if (!hidden.delete(name)) { hidden.add(name); }
+      b.textContent = (hidden.has(name) ? 'Show ' : 'Hide ') + name;
+      draw();
+    });
+    toggle.className = 'curve';
   }
-  const tip = document.createElement('output');
-  fig.append(row, tip);
-  const show = () => svg.setAttribute('viewBox', view.join(' '));
-  const at = e => {
-    const m = svg.getScreenCTM().inverse();
-    return [m.a * e.clientX + m.e, m.d * e.clientY + m.f];
-  };
-  const value = (share, range, log) => log
-    ? range[0] * Math.pow(range[1] / range[0], share)
-    : range[0] + share * (range[1] - range[0]);
-  const digits = v => String(+v.toPrecision(4));
-  // values at the pointer, interpolated linearly
-  svg.addEventListener('mousemove', e => {
-    const [px, py] = at(e);
-    const panel = panels.find(p => px >= p.box[0] && px <= p.box[0] + p.box[2] &&
-      py >= p.box[1] && py <= p.box[1] + p.box[3]);
-    if (!panel) { tip.textContent = ''; return; }
-    const [x, y, w, h] = panel.box;
-    const said = [panel.xname + ' ' + digits(value((px - x) / w, panel.x, panel.xlog))];
-    for (const s of panel.series.filter(s => !s.off)) {
-      for (let i = 1; i < s.points.length; i++) {
-        const [a, b] = [s.points[i - 1], s.points[i]];
-        if (a[0] <= px && px <= b[0]) {
-          const v = b[0] > a[0] ? a[1] + (px - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) : b[1];
-          said.push(s.label + ' ' + digits(value((y + h - v) / h, panel.y, panel.ylog)) +
-            (panel.unit ? ' ' + panel.unit : ''));
-          break;
-        }
-      }
-    }
-    tip.textContent = said.join('   ');
-  });
-  svg.addEventListener('mouseleave', () => { tip.textContent = ''; });
-  // the wheel with Ctrl or Shift zooms, so that a page still scrolls; dragging moves
-  svg.addEventListener('wheel', e => {
-    if (!e.ctrlKey && !e.shiftKey) { return; }
-    e.preventDefault();
-    const [px, py] = at(e), by = Math.exp((e.deltaY || e.deltaX) / 400);
-    const k = Math.min(whole[2] / view[2], Math.max(by, 0.02 * whole[2] / view[2]));
-    view = [px - k * (px - view[0]), py - k * (py - view[1]), k * view[2], k * view[3]];
-    show();
-  }, {passive: false});
-  svg.addEventListener('mousedown', e => {
-    const from = at(e);
-    const move = f => {
-      const to = at(f);
-      view = [view[0] + from[0] - to[0], view[1] + from[1] - to[1], view[2], view[3]];
-      show();
-    };
-    const end = () => { removeEventListener('mousemove', move); removeEventListener('mouseup', end); };
-    addEventListener('mousemove', move);
-    addEventListener('mouseup', end);
-  });
-  svg.addEventListener('dblclick', () => { view = whole.slice(); show(); });
+  addEventListener('resize', () => charts.forEach(u => u.setSize({width: place.clientWidth, height: 260})));
+  darkness.addEventListener('change', () => charts.length && draw());
+};
+if (typeof document !== 'undefined') {
+  document.querySelector('#hint').hidden = false;
+  document.querySelectorAll('figure[data-panels]').forEach(explore);
 }

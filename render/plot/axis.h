@@ -88,6 +88,10 @@ typedef void (*stroke_sink)(void *context, stroke_kind kind, double x, double y)
 // Value number `index` of a series' x, y or shade.
 double series_x(const figure_series *s, size_t index);
 double series_y(const figure_series *s, size_t index);
+
+// The line style of series `index` of a panel: its own, or where an earlier series has
+// that one, the plainest that is free.
+line_style untaken_style(const figure_series *series, int index);
 double series_shade(const figure_series *s, size_t index);
 
 // Widens a scale to include every y of a series at an x inside *within.

@@ -28,9 +28,7 @@ static double series_width(const figure_series *s)
     return CURVE_WIDTH;
 }
 
-// The line style of series `index` of a panel: its own, or where an earlier series has
-// that one, the plainest that is free.
-static line_style untaken_style(const figure_series *series, int index)
+line_style untaken_style(const figure_series *series, int index)
 {
     // styles from the plainest on
     static const line_style others[] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT,
