@@ -422,6 +422,15 @@ static status add_figure(GString *html, const report_item *item, guint index,
     artwork drawn = item->drawn;
     g_autofree figure_report *seen = g_new0(figure_report, 1);
     drawn.seen = seen;
+
+    // the section's heading is its title
+    figure untitled = {0};
+    if (drawn.plotted != NULL) {
+        untitled = *drawn.plotted;
+        untitled.title = NULL;
+        drawn.plotted = &untitled;
+    }
+
     picture p = artwork_picture(&drawn, &options);
     p.dpi = SCREEN_DPI; // of what has too many cells for paths
     g_autofree char *alternative = text_escape(p.alternative);

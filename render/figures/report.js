@@ -40,7 +40,7 @@ const chartOf = (panel, place, hidden, moved) => {
   const named = (name, unit) => name + (unit ? ' in ' + unit : '');
   const axis = label => ({label, stroke: css('--text'), grid: {stroke: css('--line'), width: 1},
     ticks: {stroke: css('--line'), width: 1}, font: '12px sans-serif', labelFont: '12px sans-serif'});
-  const digits = (u, v) => v == null ? '' : String(+v.toPrecision(5));
+  const digits = (u, v) => v == null ? '\u2013' : String(+v.toPrecision(5));
   return new uPlot({
     width: place.clientWidth, height: 260, cursor: {sync: {key: place.id}, drag: {x: true, y: false}},
     legend: {live: true},
