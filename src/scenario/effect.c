@@ -205,7 +205,7 @@ static bool is_idle(const scenario *s, int place, idle_value *idle)
 {
     if (place < parameter_count) {
         idle->why = effect_none_from(s, place, -1);
-        idle->line = s->lines[place];
+        idle->line = s->written != NULL ? s->written->lines[place] : 0;
         snprintf(idle->path, sizeof idle->path, "%s", parameter_table[place].path);
     } else {
         const int number = place - parameter_count;

@@ -1,5 +1,6 @@
 // A scenario file from its first key to its last: what each is, and in which order they
 // are read.
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/scenario/reader.h"
@@ -190,15 +191,18 @@ static void parse_root(reader *r, const tree_node *root)
     }
 }
 
-// Fills in the scenario's name and file, the line of each parameter, and empty texts for
-// what the file left out.
+// Fills in the scenario's name and file, what the file gives of each parameter, and empty
+// texts for what the file left out.
 static void complete(reader *r, const char *name)
 {
     scenario *s = r->s;
     const char *scenario_name = name != NULL ? name : r->path;
-    s->written = s->parameters;
-    for (int i = 0; i < parameter_count; i++) {
-        s->lines[i] = r->given[i].line;
+    s->written = malloc(sizeof *s->written);
+    if (s->written != NULL) {
+        s->written->values = s->parameters;
+        for (int i = 0; i < parameter_count; i++) {
+            s->written->lines[i] = r->given[i].line;
+        }
     }
     s->name = strdup(scenario_name);
     s->file = strdup(r->path);
@@ -216,8 +220,8 @@ static void complete(reader *r, const char *name)
     }
 
     // any of the copies may have failed
-    r->no_memory =
-        s->name == NULL || s->file == NULL || s->title == NULL || s->description == NULL;
+    r->no_memory = s->name == NULL || s->file == NULL || s->title == NULL ||
+                   s->description == NULL || s->written == NULL;
 }
 
 status scenario_parse(scenario *s, const char *text, size_t length, const char *path,

@@ -24,6 +24,7 @@ void scenario_finish(scenario *s)
     free(s->file);
     free(s->title);
     free(s->description);
+    free(s->written);
     free(s->actions);
     free(s->expectations);
     finish_lesson(&s->lesson);
@@ -66,6 +67,7 @@ status scenario_copy(scenario *copy, const scenario *s)
     copy->file = text_of(s->file, &good);
     copy->title = text_of(s->title, &good);
     copy->description = text_of(s->description, &good);
+    copy->written = copy_of(s->written, sizeof *s->written, &good);
     copy->actions =
         copy_of(s->actions, (size_t)s->action_count * sizeof *s->actions, &good);
     copy->expectations =
@@ -115,15 +117,15 @@ static status assign(parameters *p, const char *assignment, fault *f)
     return parameter_set_text(p, index, value, f);
 }
 
-// Resolves changed parameters and checks that the scenario's script is valid with them.
-static status resolve_changed(const scenario *s, parameters *p, fault *f)
+// Resolves the scenario's changed parameters and checks that its script is valid with
+// them.
+static status resolve_changed(scenario *s, fault *f)
 {
     // the parameters, and the locks and timing that the script sets
-    scenario changed = *s;
+    parameters *p = &s->parameters;
     TRY(parameters_resolve(p, f));
-    changed.parameters = *p;
-    TRY(scenario_check_locks(&changed, controller_of(p->control.law), f));
-    TRY(scenario_check_timing(&changed, f));
+    TRY(scenario_check_locks(s, controller_of(p->control.law), f));
+    TRY(scenario_check_timing(s, f));
 
     // every parameter that the script sets may change in this run; pushes need the
     // corrected model
@@ -145,10 +147,13 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
 
 status scenario_take_parameters(scenario *s, const parameters *changed, fault *f)
 {
-    parameters p = *changed;
-    TRY(resolve_changed(s, &p, f));
-    s->parameters = p;
-    return STATUS_OK;
+    const parameters before = s->parameters;
+    s->parameters = *changed;
+    const status failed = resolve_changed(s, f);
+    if (failed != STATUS_OK) {
+        s->parameters = before;
+    }
+    return failed;
 }
 
 status scenario_with(const scenario *base, const parameter_change *changes, size_t count,
@@ -176,9 +181,8 @@ static status override_together(scenario *s, char *const *assignments, int count
         TRY(assign(&p, assignments[i], f));
     }
     if (count > 0) {
-        TRY(resolve_changed(s, &p, f));
+        return scenario_take_parameters(s, &p, f);
     }
-    s->parameters = p;
     return STATUS_OK;
 }
 

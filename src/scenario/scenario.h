@@ -90,6 +90,12 @@ typedef struct fault_place {
     const char *path; // of the parameter, a literal; NULL if it is of none
 } fault_place;
 
+// What a scenario's file gives of its parameters.
+typedef struct written_parameters {
+    parameters values;                         // resolved
+    int lines[sizeof(((parameters *)0)->set)]; // that give them, from 1; 0: none
+} written_parameters;
+
 enum { SCENARIO_PANES = 6 }; // signals that a scenario is looked at by, at most
 
 typedef struct scenario {
@@ -99,11 +105,9 @@ typedef struct scenario {
     char *description;         // several sentences, "" if none
     int panes[SCENARIO_PANES]; // signals to look at first, indices in signal_table
     int pane_count;
-    parameters parameters; // resolved
-    parameters written;    // those of the file; all zero of a scenario that has none
-    int lines[sizeof(
-        ((parameters *)0)->set)]; // of the file that give them, from 1; 0: none
-    action *actions;              // sorted by time
+    parameters parameters;       // resolved
+    written_parameters *written; // NULL of a scenario that has no file
+    action *actions;             // sorted by time
     int action_count;
     expectation *expectations;
     int expectation_count;

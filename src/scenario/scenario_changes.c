@@ -18,9 +18,11 @@ static void format_value(char *text, size_t size, const char *path, int paramete
 // text gets the change in words.
 static bool is_changed(const scenario *s, int index, char *text, size_t size)
 {
+    static const parameters none;
+    const parameters *from = s->written != NULL ? &s->written->values : &none;
     char value[PARAMETER_TEXT_SIZE], written[PARAMETER_TEXT_SIZE];
     parameter_format(&s->parameters, index, value, sizeof value);
-    parameter_format(&s->written, index, written, sizeof written);
+    parameter_format(from, index, written, sizeof written);
     if (!s->parameters.set[index] || strcmp(value, written) == 0 ||
         effect_none_from(s, index, -1) != NULL) {
         return false;

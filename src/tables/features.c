@@ -335,8 +335,6 @@ status features_check(const parameters *p, fault *f)
     // without the features of the law, of the script and of the engine's choice: what
     // those do not allow is refused elsewhere
     const feature_set features = features_of(p);
-    parameters defaults;
-    parameters_defaults(&defaults, ARM_CORRECTED);
     for (int i = 0; i < parameter_count; i++) {
         const char *why = p->set[i] ? why_refused(features, i) : NULL;
         if (why == NULL) {
@@ -344,6 +342,8 @@ status features_check(const parameters *p, fault *f)
         }
 
         // any other value than the default is refused
+        parameters defaults;
+        parameters_defaults(&defaults, ARM_CORRECTED);
         char value[PARAMETER_TEXT_SIZE], default_value[PARAMETER_TEXT_SIZE];
         parameter_format(p, i, value, sizeof value);
         parameter_format(&defaults, i, default_value, sizeof default_value);
