@@ -58,11 +58,15 @@ static double work_of_step(const arm_run *run)
 {
     const motion *m = run->motion;
     const arm *a = &run->arm;
-    return fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial)) +
-           fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] -
-                state_quadratures(m, m->trial)[QUADRATURE_PUSHED]) +
-           fabs(chain_weight_energy(a, state_angles(m, m->state)) -
-                chain_weight_energy(a, state_angles(m, m->trial)));
+    const double moved =
+        fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial)) +
+        fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] -
+             state_quadratures(m, m->trial)[QUADRATURE_PUSHED]);
+    if (a->amount.gravity == 0) {
+        return moved;
+    }
+    return moved + fabs(chain_weight_energy(a, state_angles(m, m->state)) -
+                        chain_weight_energy(a, state_angles(m, m->trial)));
 }
 
 void arm_run_note_work(arm_run *run, double work)
@@ -156,16 +160,16 @@ static void add_wall_signals(const arm_run *run, double *state, sample *row)
     }
 }
 
-// The row of a state with that kinetic and strain energy, at which an impulse [N s] acts.
-static sample row_of_state(const arm_run *run, double *state, state_energy energy,
-                           double impulse)
+// Fills in the row of a state with that kinetic and strain energy, at which an impulse
+// [N s] acts.
+static void fill_row(const arm_run *run, double *state, state_energy energy,
+                     double impulse, sample *row)
 {
-    sample row = {.impulse = impulse};
-    add_motion_signals(run, state, &row);
-    add_energy_signals(run, state, energy, &row);
-    add_wall_signals(run, state, &row);
-    recording_add_rig_signals(run->recording, &row);
-    return row;
+    *row = (sample){.impulse = impulse};
+    add_motion_signals(run, state, row);
+    add_energy_signals(run, state, energy, row);
+    add_wall_signals(run, state, row);
+    recording_add_rig_signals(run->recording, row);
 }
 
 double *arm_run_present_state(const arm_run *run)
@@ -182,7 +186,9 @@ double *arm_run_present_state(const arm_run *run)
 
 sample arm_run_row(const arm_run *run, double *state)
 {
-    return row_of_state(run, state, motion_energy(&run->arm, run->motion, state), 0);
+    sample row;
+    fill_row(run, state, motion_energy(&run->arm, run->motion, state), 0, &row);
+    return row;
 }
 
 // Adds the row of a state with that energy to the trace.
@@ -190,8 +196,12 @@ static status record_state_row(arm_run *run, double *state, state_energy energy,
                                double impulse)
 {
     const motion *m = run->motion;
-    const sample row = row_of_state(run, state, energy, impulse);
-    return recording_add_row(run->recording, &row, state_angles(m, state),
+    sample *row = trace_next_row(&run->recording->result->trace);
+    if (row == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    fill_row(run, state, energy, impulse, row);
+    return recording_add_row(run->recording, row, state_angles(m, state),
                              state_velocities(m, state));
 }
 

@@ -100,9 +100,9 @@ void recording_publish(const recording *r, double time);
 status recording_set(recording *r, const action *todo, double time, fault *f)
     __attribute__((warn_unused_result));
 
-// Adds a row with all angles [rad] and velocities [rad/s] and lets it be seen. On the
-// rig, whose clock and the grid round differently, rows of one instant have one time.
-// STATUS_NO_MEMORY.
+// Adds a row, which may stand in its place of the trace already, with all angles [rad]
+// and velocities [rad/s] and lets it be seen. On the rig, whose clock and the grid round
+// differently, rows of one instant have one time. STATUS_NO_MEMORY.
 status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities) __attribute__((warn_unused_result));
 

@@ -100,18 +100,29 @@ bool trace_expect(trace *t, size_t rows)
     return grown;
 }
 
-status trace_add_row(trace *t, const sample *row, const double *angles,
-                     const double *velocities)
+sample *trace_next_row(trace *t)
 {
-    size_t n = (size_t)t->angle_count;
     const bool full = t->row_count >= t->arrays[TRACE_ROWS].capacity ||
                       t->row_count >= t->arrays[TRACE_ANGLES].capacity;
     if (full && !trace_expect(t, t->row_count + 1)) {
+        return NULL;
+    }
+    return &t->rows[t->row_count];
+}
+
+status trace_add_row(trace *t, const sample *row, const double *angles,
+                     const double *velocities)
+{
+    const size_t n = (size_t)t->angle_count;
+    sample *place = trace_next_row(t);
+    if (place == NULL) {
         return STATUS_NO_MEMORY;
     }
 
     // the row, and the angles and velocities of all links
-    t->rows[t->row_count] = *row;
+    if (row != place) {
+        *place = *row;
+    }
     double *to_angles = t->angles + t->row_count * n,
            *to_rates = t->velocities + t->row_count * n;
     for (size_t i = 0; i < n; i++) {

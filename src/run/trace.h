@@ -76,8 +76,12 @@ static inline size_t trace_row_bytes(int angle_count)
 // was.
 bool trace_expect(trace *t, size_t rows);
 
-// Append a row (angles, velocities: angle_count values each) or an event;
-// STATUS_NO_MEMORY if there is no room.
+// The place of the next row, where it may be filled in before it is appended; NULL if
+// there is no room.
+sample *trace_next_row(trace *t);
+
+// Append a row (angles, velocities: angle_count values each), which may stand in its
+// place already, or an event; STATUS_NO_MEMORY if there is no room.
 status trace_add_row(trace *t, const sample *row, const double *angles,
                      const double *velocities);
 status trace_add_event(trace *t, event e);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "src/engines/pair/taylor_numbers.h"
+#include "src/engines/pair/taylor_products.h"
 
 // A block of one arm, whose numbers all lanes share, or of an arm a lane.
 typedef struct coefficients {
@@ -167,18 +168,53 @@ KERNEL void energies_of(coefficients x, const bool hub_spring, const real s[2],
     store_lanes(at->strain, strain / 2);
 }
 
+#if LANES == 1
+// Even and odd terms of two series, which fill a vector.
+#define TERMS_OF_BOTH(x, y, n) FOUR((x)[n], (x)[(n) + 1], (y)[n], (y)[(n) + 1])
+
+// derivatives_of for both links.
+KERNEL void derivatives_of_links(coefficients x, int count, real t, real u,
+                                 real result[2][3])
+{
+    const real *first = x.first + AT_ANGLE_1, *second = x.first + AT_ANGLE_2;
+    four value = TERMS_OF_BOTH(first, second, count - 2), by_u = {0}, by_u2 = {0};
+    for (int n = count - 4; n >= 0; n -= 2) {
+        by_u2 = by_u2 * u + by_u;
+        by_u = by_u * u + value;
+        value = value * u + TERMS_OF_BOTH(first, second, n);
+    }
+    for (int i = 0; i < 2; i++) {
+        const int even = 2 * i, odd = even + 1;
+        result[i][0] = value[even] + t * value[odd];
+        result[i][1] = value[odd] + 2 * t * (by_u[even] + t * by_u[odd]);
+        result[i][2] =
+            2 * by_u[even] + 6 * t * by_u[odd] + 8 * u * (by_u2[even] + t * by_u2[odd]);
+    }
+}
+#else
+KERNEL void derivatives_of_links(coefficients x, int count, real t, real u,
+                                 real result[2][3])
+{
+    derivatives_of(from(x, AT_ANGLE_1), count, t, u, result[0]);
+    derivatives_of(from(x, AT_ANGLE_2), count, t, u, result[1]);
+}
+#endif
+
 // Angles, velocities and accelerations; a stuck hub has no motion.
 KERNEL void motion_of(coefficients x, taylor_form form, real t, real u, mask stuck,
                       real q[3], real w[3], real al[3])
 {
     const int hub = form.hub_spring ? 0 : 1, count = form.order + 2;
     const real zero = (real){0};
+    real d[3][3];
+    if (form.hub_spring) {
+        derivatives_of(from(x, AT_ANGLE_0), count, t, u, d[0]);
+    }
+    derivatives_of_links(x, count, t, u, d + 1);
     for (int i = hub; i < 3; i++) {
-        real d[3];
-        derivatives_of(from(x, AT_ANGLE_0 + i * (TAYLOR_MOST + 2)), count, t, u, d);
-        q[i] = d[0];
-        w[i] = i == hub ? select_lanes(stuck, zero, d[1]) : d[1];
-        al[i] = i == hub ? select_lanes(stuck, zero, d[2]) : d[2];
+        q[i] = d[i][0];
+        w[i] = i == hub ? select_lanes(stuck, zero, d[i][1]) : d[i][1];
+        al[i] = i == hub ? select_lanes(stuck, zero, d[i][2]) : d[i][2];
     }
 }
 
@@ -227,6 +263,12 @@ KERNEL void evaluate_instants(coefficients x, taylor_form form, taylor_instants 
 static void instants(const double *block, taylor_form form, taylor_instants *at)
 {
     evaluate_instants((coefficients){block, true}, form, at);
+}
+
+static void values(const double *terms, int count, const double *time, double *value,
+                   double *slope)
+{
+    value_slope_of((coefficients){terms, true}, count, load_lanes(time), value, slope);
 }
 
 #if LANES > 1

@@ -393,7 +393,7 @@ static void gather(double *block, const double *const *own)
     }
 }
 
-const taylor_loops LOOPS = {compute_series, instants, gather, ends, pieces};
+const taylor_loops LOOPS = {compute_series, instants, values, gather, ends, pieces};
 #else
-const taylor_loops LOOPS = {compute_series, instants, NULL, NULL, NULL};
+const taylor_loops LOOPS = {compute_series, instants, values, NULL, NULL, NULL};
 #endif

@@ -168,6 +168,12 @@ void taylor_fetch(taylor_lane *lane)
     taylor_terms(lane, form.hub_spring ? AT_RATE_0 : AT_RATE_1, form.order + 1);
 }
 
+void taylor_values(const double *terms, int count, const double *times, double *values,
+                   double *slopes)
+{
+    loops_of(taylor_width())->values(terms, count, times, values, slopes);
+}
+
 void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at)
 {
     const taylor_form form = lane->form;

@@ -88,6 +88,10 @@ void taylor_fetch(taylor_lane *lane);
 // Evaluates the series of one arm at `count` instants of the step, up to taylor_width().
 void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at);
 
+// Values and slopes of a series of one arm, of `count` terms, at taylor_width() times.
+void taylor_values(const double *terms, int count, const double *times, double *values,
+                   double *slopes);
+
 // engine.retorque of the series' engine.
 void taylor_retorque(const arm *a, motion *m, double change);
 

@@ -111,12 +111,30 @@ void taylor_states_at(const arm *a, motion *m, const double *h, int count,
     }
 }
 
+// Evaluates a series at count + 1 equally spaced times from `used + from` on [s], as many
+// side by side as the processor's vectors hold.
+static void evaluate_equally(const double *term, int terms, double used, double from,
+                             double spacing, int count, value_and_slope *at)
+{
+    const int width = taylor_width();
+    for (int done = 0; done <= count; done += width) {
+        double times[TAYLOR_WIDEST], values[TAYLOR_WIDEST], slopes[TAYLOR_WIDEST];
+        for (int i = 0; i < width; i++) {
+            times[i] = used + (from + (done + i) * spacing);
+        }
+        taylor_values(term, terms, times, values, slopes);
+        for (int i = 0; i < width && done + i <= count; i++) {
+            at[done + i] = (value_and_slope){values[i], slopes[i]};
+        }
+    }
+}
+
 void taylor_dense_output(const arm *a, motion *m, output_quantity of, double from,
                          double to, int count, value_and_slope *at)
 {
     taylor_integrator *s = m->memory;
     taylor_lane *lane = &s->lane;
-    const double width = count > 0 ? (to - from) / count : 0;
+    const double spacing = count > 0 ? (to - from) / count : 0;
     const int order = lane->form.order;
 
     // forces that were evaluated for the whole group, from the step's start on
@@ -144,10 +162,13 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
     const double *term = taylor_terms(lane, place, terms);
 
     // its values, of which the first may be the start itself
-    for (int i = 0; i <= count; i++) {
-        const double t = s->used + (from + i * width);
-        at[i] = t > 0 ? value_and_slope_at(term, terms, t)
-                      : (value_and_slope){term[0], term[1]};
+    if (count > 0) {
+        evaluate_equally(term, terms, s->used, from, spacing, count, at);
+    } else {
+        at[0] = value_and_slope_at(term, terms, s->used + from);
+    }
+    if (!(s->used + from > 0)) {
+        at[0] = (value_and_slope){term[0], term[1]};
     }
     if (of == OUTPUT_HUB && m->state[SLOT_FRICTION] == HUB_STICK) {
         for (int i = 0; i <= count; i++) {

@@ -134,6 +134,9 @@ typedef struct taylor_loops {
     int (*series)(double *block, taylor_form form);
     // Evaluates the series of an arm, a block of its own, at as many instants.
     void (*instants)(const double *block, taylor_form form, taylor_instants *at);
+    // Values and slopes of one of an arm's series, of `count` terms, at as many instants.
+    void (*values)(const double *terms, int count, const double *time, double *value,
+                   double *slope);
     // Copies the first AT_INPUTS places of the arms' own blocks into the lanes of one.
     void (*gather)(double *block, const double *const *own);
     // Evaluates the series of as many arms, each in its lane of the block at its own
