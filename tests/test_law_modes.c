@@ -14,7 +14,7 @@ TEST(test_the_panel_is_whole_on_every_screen)
     static const int sizes[][2] = {{80, 24}, {100, 30}, {120, 40}, {200, 60}};
     OPEN_EXPLORER(ex, "compare/hybrid");
     for (EACH_TEXT(c, "hybrid", "recovering", "force-pd", "force-integral",
-                   "discontinuous", "touch", "speed-limit", "open-loop", "bang-bang",
+                   "discontinuous", "speed-limit", "open-loop", "bang-bang",
                    "reverse-torque")) {
         char mode[MODE_NAME_SIZE];
         assert_true(explorer_carry_out(&ex, formatted("law %s", *c)));

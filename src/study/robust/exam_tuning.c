@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/numbers.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 
-#define FIRST_STEP 0.1 // share of the ranges
+#define FIRST_STEP 0.07 // share of the ranges
 
 // The value that the scenario gives; of a setting that it does not give, the law's own.
 static double given_value(const scenario *s, const sweep_axis *axis)
@@ -91,7 +92,7 @@ double exam_loss(const law_exam *e)
     double sum = 0;
     for (size_t i = 0; i < runs; i++) {
         double power = e->verdicts[i].worst;
-        for (int doubling = 0; doubling < 3; doubling++) {
+        for (int doubling = 0; doubling < 4; doubling++) {
             power *= power;
         }
         sum += isfinite(power) ? power / (1 + power) : 1;
@@ -117,25 +118,28 @@ static double share_of(const sweep_axis *axis, double value)
     return high;
 }
 
-// The values at shares of the ranges.
+// The values at shares of the ranges, to four digits: more are luck, and take room.
 static void values_at(const exam_tuning *t, const double *shares, double *values)
 {
     for (int i = 0; i < t->axis_count; i++) {
         const double share = fmin(shares[i], nextafter(1, 0));
-        values[i] = sweep_axis_value_at(&t->axes[i], share);
+        char text[NUMBER_TEXT];
+        decimal_print(text, sizeof text, "%.4g", sweep_axis_value_at(&t->axes[i], share));
+        values[i] = decimal_parse(text, NULL);
     }
 }
 
-// The loss with values; values that the law refuses have the largest one.
+// The loss with values; values that are refused have the largest one, and f says why.
 static status evaluate(exam_tuning *t, const double *values, const exam_options *options,
-                       double *loss, fault *f)
+                       double *loss, bool *refused, fault *f)
 {
     SCOPED(law_exam_finish) law_exam e = {.runs = 0};
     const status code =
         exam_tuning_exam(t, values, t->asked.cases, t->asked.seed, options, &e, f);
     *loss = 1;
     t->done++;
-    if (code == STATUS_BAD_ARGUMENT || code == STATUS_BAD_SCENARIO) {
+    *refused = code == STATUS_BAD_ARGUMENT || code == STATUS_BAD_SCENARIO;
+    if (*refused) {
         return STATUS_OK;
     }
     if (code == STATUS_OK) {
@@ -148,16 +152,20 @@ static status evaluate(exam_tuning *t, const double *values, const exam_options 
     return code;
 }
 
-// Draws a generation and evaluates its points.
+// Evaluates the points of a generation. Where all are refused the last one's reason ends
+// the search.
 static status try_generation(exam_tuning *t, const evolution *e, const double *drawn,
                              const exam_options *options, double *losses, fault *f)
 {
+    int refusals = 0;
     for (int p = 0; p < e->points; p++) {
         double values[EVOLUTION_MOST];
+        bool refused;
         values_at(t, drawn + p * e->n, values);
-        TRY(evaluate(t, values, options, &losses[p], f));
+        TRY(evaluate(t, values, options, &losses[p], &refused, f));
+        refusals += refused;
     }
-    return STATUS_OK;
+    return refusals == e->points ? STATUS_BAD_ARGUMENT : STATUS_OK;
 }
 
 // Generations until the evaluations are spent.
@@ -178,13 +186,18 @@ static status evolve(exam_tuning *t, evolution *e, double *drawn,
 
     // the mean of the last generation has less of its draws' luck than any of them
     double values[EVOLUTION_MOST], unused;
+    bool refused;
     values_at(t, e->mean, values);
-    return evaluate(t, values, options, &unused, f);
+    return evaluate(t, values, options, &unused, &refused, f);
 }
 
 status exam_tuning_run(exam_tuning *t, const exam_options *options, fault *f)
 {
-    TRY(evaluate(t, t->given, options, &t->given_loss, f));
+    bool refused;
+    TRY(evaluate(t, t->given, options, &t->given_loss, &refused, f));
+    if (refused) {
+        return STATUS_BAD_ARGUMENT;
+    }
     double start[EVOLUTION_MOST];
     for (int i = 0; i < t->axis_count; i++) {
         start[i] = share_of(&t->axes[i], t->given[i]);

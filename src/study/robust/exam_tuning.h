@@ -3,7 +3,7 @@
 //
 // A search needs more than a share, which does not tell near from far. The loss of a run
 // grows from 0 to 1 about the bounds: of its largest ratio w of a quantity to its bound
-// it is w^8/(1 + w^8), a half at the bound; a run that failed or never settles has 1.
+// it is w^16/(1 + w^16), a half at the bound; a run that failed or never settles has 1.
 #pragma once
 
 #include "src/study/robust/evolution.h"
