@@ -48,5 +48,16 @@ done
 # what cannot be exported is said, and nothing is written
 status=0
 "$impactlab" export compare/observer -o "$work/none" 2>"$work/said" || status=$?
-[ "$status" = 2 ] && grep -q "cannot be exported" "$work/said" && [ ! -e "$work/none" ]
+[ "$status" = 2 ] || { echo "observer: exit status $status, expected 2"; exit 1; }
+grep -q "cannot be exported" "$work/said"
+[ ! -e "$work/none" ] || { echo "a refused export leaves a folder"; exit 1; }
+
+# a folder of somebody else's keeps its files
+mkdir "$work/theirs"
+echo mine >"$work/theirs/readings.csv"
+status=0
+"$impactlab" export compare/touch -o "$work/theirs" -q 2>"$work/said" || status=$?
+[ "$status" = 1 ] || { echo "a foreign folder: exit status $status, expected 1"; exit 1; }
+[ "$(cat "$work/theirs/readings.csv")" = mine ]
+[ ! -e "$work/theirs/law.h" ] || { echo "a foreign folder gets files"; exit 1; }
 echo "the same commands"

@@ -304,7 +304,7 @@ static json_t *ink_json(const figure_series *s, figure_theme theme, int place)
     if (s->run == RUN_BEHIND) {
         c = palette_of(theme)->mark;
     } else if (s->run > 0) {
-        c = run_ink(theme, s->run);
+        c = run_colour(theme, s->run);
     }
     const double bytes[] = {round(255 * c.red), round(255 * c.green),
                             round(255 * c.blue)};
@@ -462,7 +462,11 @@ static status add_section(const report_content *r, guint index, GString *html,
 {
     const report_item *item = report_item_at(r, index);
     g_autofree char *title = text_escape(item->drawn.title);
-    text_append(html, "<section id=\"item-%u\">\n<h2>%s</h2>\n", index, title);
+
+    // a diagram has its title within it; the heading is for readers of the outline
+    const bool diagram = item->drawn.paint != NULL;
+    const char *look = diagram ? " class=\"unseen\"" : "";
+    text_append(html, "<section id=\"item-%u\">\n<h2%s>%s</h2>\n", index, look, title);
 
     // the item itself
     if (item->drawn.table != NULL) {

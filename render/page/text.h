@@ -21,10 +21,9 @@ char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give,
                     gpointer context);
 
 // Replaces <sub>..</sub> and <sup>..</sup> by spans of 70 % of the given size, spaces at
-// which a
-// line must not end by no-break spaces (between a number and its unit, around an equals
-// sign, before a version), and a straight apostrophe within a word by a typographic one.
-// Free the result with g_free.
+// which a line must not end by no-break spaces (between a number and its unit, around an
+// equals sign, before a version), and a straight apostrophe within a word by a
+// typographic one. Free the result with g_free.
 char *text_translate(const char *markup, double size);
 
 // A unit as the SI brochure sets it: "rad/s2" gives "rad/s²", "kg m2" gives "kg·m²". Free

@@ -156,8 +156,8 @@ typedef struct figure_panel {
     // without the legend that two or more curves have: inside the panel where there are
     // no data, otherwise in a row above
     bool keyless;
-    bool
-        key_above; // its legend stands in a row above it, at its left, with one entry too
+    // its legend stands in a row above it, at its left, with one entry, too
+    bool key_above;
 } figure_panel;
 
 typedef struct figure {

@@ -109,14 +109,15 @@ static char *frequency_text(double frequency)
 
 // ---- Bode
 
-// Adds a margin to a panel: a line at a frequency [rad/s] between two values.
-static void add_margin_line(owned_figure *o, int panel, double w, double from, double to,
-                            const char *name, const char *label)
+// Adds a margin to a panel: a line from one point to another.
+static void add_margin_line(owned_figure *o, int panel, const double from[2],
+                            const double to[2], const char *name, const char *label)
 {
     double *x = owned_figure_numbers(o, 2), *y = owned_figure_numbers(o, 2);
-    x[0] = x[1] = w / (2 * PI);
-    y[0] = from;
-    y[1] = to;
+    x[0] = from[0];
+    y[0] = from[1];
+    x[1] = to[0];
+    y[1] = to[1];
     owned_figure_add(o, panel,
                      (figure_series){name, label, x, y, 2, .colour = SLOT_VERMILLION,
                                      .style = LINE_DOTTED, .own_style = true});
@@ -140,14 +141,16 @@ static void add_bode_margins(owned_figure *o, const linear_response *loop,
     int i;
     double share;
     if (isfinite(m->gain_db)) {
-        add_margin_line(o, GAIN_PANEL, m->gain_at, -m->gain_db, 0, "gain_margin",
-                        gain_margin_label(o, m));
+        const double at = m->gain_at / (2 * PI);
+        add_margin_line(o, GAIN_PANEL, (double[]){at, -m->gain_db}, (double[]){at, 0},
+                        "gain_margin", gain_margin_label(o, m));
     }
     if (isfinite(m->phase_deg) && find_frequency(loop, m->phase_at, &i, &share)) {
         const double there = phase[i] + share * (phase[i + 1] - phase[i]);
         const double behind = 360 * round((there - 180) / 360) + 180;
-        add_margin_line(o, PHASE_PANEL, m->phase_at, there, behind, "phase_margin",
-                        phase_margin_label(o, m));
+        const double at = m->phase_at / (2 * PI);
+        add_margin_line(o, PHASE_PANEL, (double[]){at, there}, (double[]){at, behind},
+                        "phase_margin", phase_margin_label(o, m));
         o->panels[PHASE_PANEL].levels = OWNED(o, figure_level, behind);
         o->panels[PHASE_PANEL].level_count = 1;
     }
@@ -329,14 +332,9 @@ static void add_plane_margins(owned_figure *o, const linear_response *loop,
                               const linear_margins *m)
 {
     if (isfinite(m->gain_db)) {
-        double *x = owned_figure_numbers(o, 2), *y = owned_figure_numbers(o, 2);
-        x[0] = -1;
-        x[1] = creal(gain_at(loop, m->gain_at));
-        y[0] = y[1] = 0;
-        owned_figure_add(o, 0,
-                         (figure_series){"gain_margin", gain_margin_label(o, m), x, y, 2,
-                                         .colour = SLOT_VERMILLION, .style = LINE_DOTTED,
-                                         .own_style = true});
+        const double crossing = creal(gain_at(loop, m->gain_at));
+        add_margin_line(o, 0, (double[]){-1, 0}, (double[]){crossing, 0}, "gain_margin",
+                        gain_margin_label(o, m));
     }
     if (isfinite(m->phase_deg)) {
         const double angle = carg(gain_at(loop, m->phase_at));

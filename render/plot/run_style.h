@@ -29,7 +29,7 @@ static inline run_style run_style_of(int rank)
 }
 
 // Its colour in a theme; in the mono one its grey.
-static inline colour run_ink(figure_theme theme, int rank)
+static inline colour run_colour(figure_theme theme, int rank)
 {
     const run_style look = run_style_of(rank);
     return palette_series(theme, look.slot, theme == THEME_MONO ? look.grey : 0);

@@ -70,7 +70,7 @@ static series_pen run_pen(const drawing *d, const figure_series *s)
     if (s->run == RUN_BEHIND) {
         return (series_pen){d->style.colours->mark, LINE_SOLID, SECONDARY_WIDTH};
     }
-    return (series_pen){run_ink(d->style.theme, s->run), run_style_of(s->run).dash,
+    return (series_pen){run_colour(d->style.theme, s->run), run_style_of(s->run).dash,
                         CURVE_WIDTH};
 }
 
@@ -514,7 +514,7 @@ static void set_impulse(const drawing *d, const figure_impulse *p)
     colour ink = palette_series(d->style.theme, SLOT_PURPLE, 0);
     line_style dash = LINE_SOLID;
     if (p->run > 0) {
-        ink = run_ink(d->style.theme, p->run);
+        ink = run_colour(d->style.theme, p->run);
         dash = run_style_of(p->run).dash;
     }
     set_colour(d->cr, ink);

@@ -24,6 +24,18 @@ static double given_value(const scenario *s, const sweep_axis *axis)
     return index >= 0 ? controller_parameter_at(law, index).initial : value;
 }
 
+// Whether the law takes a value of an axis; f says why not, such as that it has no such
+// setting.
+static status try_value(const scenario *s, const sweep_axis *axis, double value, fault *f)
+{
+    scenario tried;
+    rig *r;
+    TRY(sweep_axes_scenario(axis, 1, &value, s, &tried, f));
+    TRY(rig_create(&r, &tried.parameters, NULL, f));
+    rig_destroy(r);
+    return STATUS_OK;
+}
+
 // Reads one of what is varied.
 static status read_axis(exam_tuning *t, const char *text, fault *f)
 {
@@ -33,6 +45,8 @@ static status read_axis(exam_tuning *t, const char *text, fault *f)
              "--vary %.200s: expected a range, PATH=a:b", text);
     TRY(sweep_axis_find(axis, text, f));
     TRY(sweep_axis_parse_range(axis, equals + 1, f));
+    TRY(try_value(t->asked.base, axis, axis->low, f));
+    TRY(try_value(t->asked.base, axis, axis->high, f));
     const double given = given_value(t->asked.base, axis);
     FAULT_IF(!isfinite(given), f, STATUS_BAD_ARGUMENT,
              "--vary %.200s: the scenario gives it no value to begin with", text);
@@ -173,14 +187,15 @@ static status evolve(exam_tuning *t, evolution *e, double *drawn,
                      const exam_options *options, fault *f)
 {
     bool goes_on = true;
-    while (goes_on && t->done < t->evaluations) {
+    const size_t needed = (size_t)e->points + 1; // of a generation, and its mean
+    while (goes_on && (e->generation == 0 || t->done + needed <= t->evaluations)) {
         double losses[EVOLUTION_MOST];
         const double before = t->found_loss;
         evolution_draw(e, drawn);
         TRY(try_generation(t, e, drawn, options, losses, f));
         goes_on = evolution_take(e, drawn, losses);
-        if (t->improved != NULL && t->found_loss < before) {
-            TRY(t->improved(t->context, t, f));
+        if (t->told != NULL) {
+            TRY(t->told(t->context, t, t->found_loss < before, f));
         }
     }
 

@@ -14,18 +14,20 @@ typedef struct exam_tuning {
     exam_request asked; // with one law, that of the scenario
     sweep_axis axes[EVOLUTION_MOST];
     int axis_count;
-    size_t evaluations;            // at most
+    size_t evaluations;            // at most, and at least a generation's
     size_t done;                   // evaluations so far
     double given[EVOLUTION_MOST];  // values of the scenario
     double found[EVOLUTION_MOST];  // the best so far
     double given_loss, found_loss; // mean over the runs
-    // told after each generation; its failure ends the search. NULL: nobody
-    status (*improved)(void *context, const struct exam_tuning *t, fault *f);
+    // told after each generation, and whether it found better values; its failure ends
+    // the search. NULL: nobody
+    status (*told)(void *context, const struct exam_tuning *t, bool better, fault *f);
     void *context;
 } exam_tuning;
 
-// Reads "PATH=a:b" or "PATH=a:b:log" for each parameter. STATUS_BAD_ARGUMENT with a
-// sentence; exam_tuning_finish in any case.
+// Reads "PATH=a:b" or "PATH=a:b:log" for each parameter. STATUS_BAD_ARGUMENT, or
+// STATUS_BAD_SCENARIO where the law does not take the ends of a range, with a sentence;
+// exam_tuning_finish in any case.
 status exam_tuning_init(exam_tuning *t, const exam_request *asked, char *const *vary,
                         int vary_count, size_t evaluations, fault *f);
 void exam_tuning_finish(exam_tuning *t);

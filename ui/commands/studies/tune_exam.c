@@ -22,6 +22,7 @@ typedef struct exam_tuner {
     exam_tuning tuning;
     law_exam unseen[JUDGED];
     bool judged;
+    bool shows_progress; // on a terminal, without --quiet
 } exam_tuner;
 
 static void exam_tuner_finish(exam_tuner *t)
@@ -101,16 +102,21 @@ static void write_tuned_scenario(FILE *stream, const void *tuner)
 
 // --- the search ------------------------------------------------------------------------
 
-// Writes the best so far, and says how far the search is.
-static status keep_best_of_exam(void *context, const exam_tuning *tuned, fault *f)
+// Says on a terminal how far the search is, and writes the best so far where it is new.
+static status keep_best_of_exam(void *context, const exam_tuning *tuned, bool better,
+                                fault *f)
 {
     const exam_tuner *t = context;
     const char *path = t->arguments->output;
-    if (path == NULL || strcmp(path, "-") == 0) {
+    if (t->shows_progress) {
+        fprintf(stderr, "\r%zu of %zu exams, loss %.4g ", tuned->done, tuned->evaluations,
+                tuned->found_loss);
+        fflush(stderr);
+    }
+    if (!better || path == NULL || strcmp(path, "-") == 0) {
         return STATUS_OK;
     }
     whole_file file;
-    (void)tuned;
     TRY(whole_file_open(&file, path, f));
     write_tuned_scenario(file.stream, t);
     return whole_file_commit(&file, f);
@@ -178,9 +184,10 @@ int tune_over_exam(const arguments *a, const scenario *s)
                          &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    t.tuning.improved = keep_best_of_exam;
+    t.tuning.told = keep_best_of_exam;
     t.tuning.context = &t;
     const sweep_options many = many_runs_begin(a, "");
+    t.shows_progress = many.report != NULL;
     const exam_options options = {.jobs = many.jobs,
                                   .stop = many.stop,
                                   .abandon = many.abandon};
