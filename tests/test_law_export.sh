@@ -35,6 +35,11 @@ done <<'END'
 --set control.settings=touch_speed=0.3 --set control.jitter=0.001 --set control.seed=9
 END
 
+# a name with a line end stays within its comment
+printf 'title: t\ncontrol: {law: touch}\nrun: {duration: 0.1 s}\n' >"$work"/$'a\nint b = c; d.yaml'
+"$impactlab" export "$work"/$'a\nint b = c; d.yaml' -o "$work/out" -q
+replay cc "a name with a line end"
+
 # another seed: the law is the same file, the readings are others
 "$impactlab" export compare/touch -o "$work/out" -q
 cp "$work/out/law.c" "$work/law.c"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 #include "src/rig/controller_values.h"
 #include "src/run/run_loop.h"
 #include "src/exchange/law_texts.h"
@@ -81,10 +82,12 @@ static const struct {
 static void write_heading(const law_export *e, FILE *stream, const char *what)
 {
     const controller *law = e->rig->law;
+    char scenario_name[256]; // a line end in it would end the comment
+    snprintf(scenario_name, sizeof scenario_name, "%s", e->scenario->name);
+    make_printable(scenario_name, 0);
     fprintf(stream, "// %s of the control law '%s', in %s precision,\n", what, law->name,
             precisions[e->precision].word);
-    fprintf(stream, "// written by impactlab from the scenario %s.\n//\n",
-            e->scenario->name);
+    fprintf(stream, "// written by impactlab from the scenario %s.\n//\n", scenario_name);
 }
 
 // The name of a parameter in capitals, as its place is called.
