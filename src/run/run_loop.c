@@ -2,9 +2,11 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/random.h"
 #include "src/base/shipped.h"
 #include "src/rig/controller_values.h"
 #include "src/run/run_driver.h"
@@ -330,47 +332,79 @@ const scenario *loop_scenario(const run_loop *l)
 
 // --- the state as bytes ----------------------------------------------------------------
 
-// The first part of a saved state; the bytes of the driver follow.
+// The first part of a saved state, without padding; the bytes of the driver follow.
 typedef struct saved_head {
-    uint64_t check; // check_of all bytes that follow it
+    char magic[8];    // SAVED_MAGIC
+    uint64_t version; // SAVED_VERSION, of how the bytes are laid out
+    uint64_t size;    // of the whole block [bytes]
     uint64_t fingerprint;
-    size_t size;
-    bool ended;
+    uint64_t check; // check_of what follows it
+    uint64_t ended;
     double volts;
 } saved_head;
+
+#define SAVED_MAGIC   "armstate"
+#define SAVED_VERSION 1
+
+static_assert(sizeof(saved_head) == 7 * sizeof(uint64_t), "the head has no padding");
 
 size_t loop_saved_size(const run_loop *l)
 {
     return sizeof(saved_head) + driver_saved_size(&l->driver);
 }
 
-// A 64-bit checksum of the bytes after the head's `check`; other bytes have the same one
-// by chance only, once in 2^64. Eight bytes at a time are mixed in as by FNV-1a, and then
-// the upper half of the sum into the lower one.
+// A 64-bit checksum of the bytes of a block after the head's `check`. Eight bytes at a
+// time go into the state of splitmix64, whose mixing makes other bytes have the same sum
+// by chance only, once in 2^64.
 static uint64_t check_of(const char *bytes, size_t size)
 {
-    uint64_t check = 0xcbf29ce484222325u;
-    for (size_t at = sizeof check; at < size; at += sizeof check) {
+    uint64_t check = size;
+    size_t at = offsetof(saved_head, check) + sizeof check;
+    for (; at < size; at += sizeof check) {
         uint64_t word = 0;
         memcpy(&word, bytes + at, size - at < sizeof word ? size - at : sizeof word);
-        check = (check ^ word) * 0x100000001b3u;
-        check ^= check >> 32;
+        word ^= check;
+        check = splitmix64_next(&word);
     }
     return check;
 }
 
 void loop_save(const run_loop *l, void *bytes)
 {
-    saved_head head;
-    memset(&head, 0, sizeof head);
-    head.fingerprint = l->fingerprint;
-    head.size = loop_saved_size(l);
-    head.ended = l->ended;
-    head.volts = l->volts;
+    const size_t size = loop_saved_size(l);
+    saved_head head = {.version = SAVED_VERSION,
+                       .size = size,
+                       .fingerprint = l->fingerprint,
+                       .ended = l->ended,
+                       .volts = l->volts};
+    memcpy(head.magic, SAVED_MAGIC, sizeof head.magic);
     memcpy(bytes, &head, sizeof head);
     driver_save(&l->driver, (char *)bytes + sizeof head);
-    head.check = check_of(bytes, head.size);
-    memcpy(bytes, &head.check, sizeof head.check);
+    head.check = check_of(bytes, size);
+    memcpy(bytes, &head, sizeof head);
+}
+
+// Says in f why bytes are no whole state of this loop.
+static status check_saved(const run_loop *l, const void *bytes, size_t size, fault *f)
+{
+    const size_t expected = loop_saved_size(l);
+    saved_head head;
+    FAULT_IF(size < sizeof head || memcmp(bytes, SAVED_MAGIC, sizeof head.magic) != 0, f,
+             STATUS_BAD_ARGUMENT, "the bytes are no saved state of a loop");
+    memcpy(&head, bytes, sizeof head);
+    FAULT_IF(head.version != SAVED_VERSION, f, STATUS_BAD_ARGUMENT,
+             "the state is laid out as in version %llu, expected %d",
+             (unsigned long long)head.version, SAVED_VERSION);
+
+    // then its sum, before anything that it says is relied on
+    FAULT_IF(head.size != size, f, STATUS_BAD_ARGUMENT,
+             "a state of this loop has %zu bytes, but %zu were given", expected, size);
+    FAULT_IF(head.check != check_of(bytes, size), f, STATUS_BAD_ARGUMENT,
+             "the state is damaged, expected the bytes as they were saved");
+    FAULT_IF(head.fingerprint != l->fingerprint || size != expected, f,
+             STATUS_BAD_ARGUMENT,
+             "the state is of another scenario, another controller or another version");
+    return STATUS_OK;
 }
 
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
@@ -379,21 +413,13 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
     FAULT_IF(on != NULL && on->process != NULL, f, STATUS_BAD_ARGUMENT,
              "a program as the controller cannot go back to a saved state");
 
-    // the bytes must be a whole state of this loop
-    saved_head head;
-    FAULT_IF(size != loop_saved_size(l), f, STATUS_BAD_ARGUMENT,
-             "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l),
-             size);
-    memcpy(&head, bytes, sizeof head);
-    FAULT_IF(head.fingerprint != l->fingerprint || head.size != size, f,
-             STATUS_BAD_ARGUMENT,
-             "the state is of another scenario, another controller or another version");
-    FAULT_IF(head.check != check_of(bytes, size), f, STATUS_BAD_ARGUMENT,
-             "the state is damaged, expected the bytes as they were saved");
+    TRY(check_saved(l, bytes, size, f));
 
     // go back to it
+    saved_head head;
+    memcpy(&head, bytes, sizeof head);
     l->volts = head.volts;
-    l->ended = head.ended;
+    l->ended = head.ended != 0;
     l->failed = STATUS_OK;
     l->fault = (fault){.text = "", .path = ""};
     driver_restore(&l->driver, (const char *)bytes + sizeof head);

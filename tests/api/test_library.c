@@ -441,6 +441,62 @@ TEST(states_come_back)
     }
 }
 
+// Flips `flips` bits of a block, of which at least one is then another than it was.
+static void flip_bits(unsigned char *bytes, const unsigned char *whole, size_t size,
+                      int flips)
+{
+    for (int i = 0; i < flips || memcmp(bytes, whole, size) == 0; i++) {
+        const size_t bit = (size_t)lrand48() % (8 * size);
+        bytes[bit / 8] ^= (unsigned char)(1u << bit % 8);
+    }
+}
+
+// No block but a whole one of its own scenario goes into a loop: flipped, cut, turned
+// round or another's is refused, and the loop stays as it is. Loops of one state save the
+// same bytes.
+TEST(only_whole_states_are_taken)
+{
+    enum { BLOCKS = 100000 };
+    own_scenario *scenario = opened("compare/hybrid");
+    own_loop *loop = loop_of(scenario, 0), *same = loop_of(scenario, 0);
+    set(scenario, "wall.angle", "0.5");
+    own_loop *other = loop_of(scenario, 0);
+    const size_t size = impactlab_loop_state_size(loop);
+    assert_int_equal(impactlab_loop_state_size(other), size);
+    SCOPED(free_kept) unsigned char *whole = malloc(size), *bytes = malloc(size);
+    step_to(same, 0.3);
+    check_done(impactlab_loop_save_state(same, bytes, size, &told));
+    step_to(loop, 0.3);
+    check_done(impactlab_loop_save_state(loop, whole, size, &told));
+    assert_memory_equal(whole, bytes, size);
+
+    srand48(1);
+    for (int i = 0; i < BLOCKS; i++) {
+        const size_t part = (size_t)lrand48() % size;
+        size_t given = size;
+        memcpy(bytes, whole, size);
+        if (i % 4 == 0) {
+            given = part;
+        } else if (i % 4 == 1) {
+            const size_t middle = 1 + part % (size - 1);
+            memcpy(bytes, whole + middle, size - middle);
+            memcpy(bytes + size - middle, whole, middle);
+        } else {
+            flip_bits(bytes, whole, size, 1 + i / 4 % 64);
+        }
+        assert_int_equal(impactlab_loop_restore_state(loop, bytes, given, &told),
+                         IMPACTLAB_BAD_ARGUMENT);
+    }
+    step_to(other, 0.3);
+    check_done(impactlab_loop_save_state(other, bytes, size, &told));
+    assert_int_equal(impactlab_loop_restore_state(loop, bytes, size, &told),
+                     IMPACTLAB_BAD_ARGUMENT);
+
+    check_done(impactlab_loop_save_state(loop, bytes, size, &told));
+    assert_memory_equal(whole, bytes, size);
+    check_done(impactlab_loop_restore_state(loop, bytes, size, &told));
+}
+
 // A program starts where it is allowed, and its loop does not go back.
 TEST(the_loop_of_a_process)
 {

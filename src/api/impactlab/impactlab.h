@@ -369,8 +369,10 @@ IMPACTLAB_EXPORT int impactlab_loop_state(const impactlab_loop *loop,
 // exactly (to the last bit). A block fits any loop of the same scenario and version on
 // the same kind of machine. With a plug-in as the controller it fits only the loop that
 // saved it; with a process as the controller none can be restored. Recorded rows are not
-// part of the state: restoring drops those that are later. Bytes that are damaged are
-// refused, and change nothing.
+// part of the state: restoring drops those that are later. A block names its kind, layout
+// and size, has a hash of its scenario and a checksum, and holds no address and nothing
+// undefined: loops in one state save the same bytes. Bytes that are damaged are refused,
+// and change nothing.
 IMPACTLAB_EXPORT size_t impactlab_loop_state_size(const impactlab_loop *loop);
 IMPACTLAB_EXPORT int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes,
                                                size_t size, impactlab_error *error);
