@@ -189,6 +189,17 @@ int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
     return api_done(error);
 }
 
+size_t impactlab_loop_signals(impactlab_loop *loop, double *values, size_t count)
+{
+    if (loop != NULL && values != NULL) {
+        const sample row = loop_row(loop->loop);
+        for (size_t i = 0; i < count && i < (size_t)signal_count; i++) {
+            values[i] = signal_value(&row, (int)i);
+        }
+    }
+    return (size_t)signal_count;
+}
+
 int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table,
                          impactlab_error *error)
 {

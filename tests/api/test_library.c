@@ -441,6 +441,32 @@ TEST(states_come_back)
     }
 }
 
+// All signals at once are each of them, to the last bit; a short array gets the first.
+TEST(all_signals_at_once)
+{
+    static const char *const names[] = {"corrected/first-impact", "compare/touch",
+                                        "corrected/twenty-links",
+                                        "compare/hybrid-printed-arm"};
+    enum { FEW = 3, MOST = 64 };
+    for (EACH(c, names)) {
+        own_scenario *scenario = opened(*c);
+        own_loop *loop = loop_of(scenario, 0);
+        for (double time = 0; time < 0.5; time += 0.031) {
+            step_to(loop, time);
+            double few[FEW + 1] = {0, 0, 0, -7}, all[MOST];
+            const size_t count = impactlab_loop_signals(loop, all, MOST);
+            assert_null(impactlab_signal_at(count));
+            assert_int_equal(impactlab_loop_signals(loop, few, FEW), count);
+            assert_memory_equal(few, all, FEW * sizeof *few);
+            assert_true(few[FEW] == -7);
+            for (size_t i = 0; i < count; i++) {
+                check_same(all[i], signal_of(loop, impactlab_signal_at(i)->name));
+            }
+        }
+    }
+    assert_int_equal(impactlab_loop_signals(NULL, NULL, 0) > 0, 1);
+}
+
 // Flips `flips` bits of a block, of which at least one is then another than it was.
 static void flip_bits(unsigned char *bytes, const unsigned char *whole, size_t size,
                       int flips)

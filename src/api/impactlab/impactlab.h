@@ -358,10 +358,14 @@ IMPACTLAB_EXPORT int impactlab_loop_read_sensors(impactlab_loop *loop,
                                                  impactlab_reading *reading,
                                                  impactlab_error *error);
 
-// The true (unmeasured) value of a signal now; and the state as a table of two rows,
-// angles and velocities of all degrees of freedom, valid until the loop advances.
+// The true (unmeasured) value of a signal now; or of all of them, in the order of
+// impactlab_signal_at, at the cost of about one: at most `count` are written, and their
+// number is returned. And the state as a table of two rows, angles and velocities of all
+// degrees of freedom, valid until the loop advances.
 IMPACTLAB_EXPORT int impactlab_loop_signal(impactlab_loop *loop, const char *name,
                                            double *value, impactlab_error *error);
+IMPACTLAB_EXPORT size_t impactlab_loop_signals(impactlab_loop *loop, double *values,
+                                               size_t count);
 IMPACTLAB_EXPORT int impactlab_loop_state(const impactlab_loop *loop,
                                           impactlab_table *table, impactlab_error *error);
 

@@ -265,6 +265,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "loop_push": (c_int, [_handle, c_double, _error]),
     "loop_read_sensors": (c_int, [_handle, POINTER(ReadingStruct), _error]),
     "loop_signal": (c_int, [_handle, _text, POINTER(c_double), _error]),
+    "loop_signals": (c_size_t, [_handle, POINTER(c_double), c_size_t]),
     "loop_state": (c_int, [_handle, POINTER(TableStruct), _error]),
     "loop_state_size": (c_size_t, [_handle]),
     "loop_save_state": (c_int, [_handle, c_void_p, c_size_t, _error]),

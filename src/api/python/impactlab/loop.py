@@ -5,14 +5,14 @@ from __future__ import annotations
 import ctypes
 import math
 from ctypes import byref, c_double, c_void_p
-from typing import Any, Union
+from typing import Any, Dict, Union
 
 import numpy as np
 
 from . import library
 from .library import (COMMAND, KEEP_ROWS, Callbacks, ErrorStruct, Owner, call, lib, number,
                       raise_error, text)
-from .run import Run
+from .run import SIGNALS, Run
 from .scenario import Scenario, value_of
 
 
@@ -106,6 +106,17 @@ class Loop(Owner):
         value = c_double()
         self._call("loop_signal", text(name, "the name of a signal"), byref(value))
         return value.value
+
+    @property
+    def signals(self) -> Dict[str, float]:
+        """The true values of all signals now, by name, at the cost of about one."""
+        values = (c_double * len(SIGNALS))()
+        with self._lock:
+            lib.impactlab_loop_signals(self._handle, values, len(values))
+        return dict(zip(SIGNALS, values))
+
+    def __repr__(self) -> str:
+        return f"<Loop at {self.time:.6g} s{', ended' if self.ended else ''}>"
 
     @property
     def state(self) -> np.ndarray:
