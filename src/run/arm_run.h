@@ -210,7 +210,7 @@ status arm_run_record_first_row(arm_run *run) __attribute__((warn_unused_result)
 // Whether that has been done.
 static inline bool arm_run_has_first_row(const arm_run *run)
 {
-    return run->recording->state.rows.next > 0;
+    return run->recording->state.rows.next[GRID_OF_STEPS] > 0;
 }
 
 // Records the rows of the grid up to an instant [s] within the step under way.

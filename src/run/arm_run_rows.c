@@ -76,8 +76,9 @@ void arm_run_note_work(arm_run *run, double work)
 
 // --- rows ------------------------------------------------------------------------------
 
-// Rows lie on a grid of multiples of method.step. One within this share of a step from
-// the end of a step lies at that end.
+// Rows lie on grids: multiples of method.step, and of what the run is asked for. One
+// within this share of the grid's interval from the end of a step lies at that end, and
+// so do rows of two grids.
 #define GRID_TOLERANCE 1e-9
 
 // Fills in the signals of the motion: angles and their derivatives, gap, force and
@@ -207,7 +208,7 @@ static status record_state_row(arm_run *run, double *state, state_energy energy,
 
 status arm_run_record_row(arm_run *run, double *state, double impulse)
 {
-    if (!run->recording->options->keep_trace) {
+    if (!recording_has_rows(run->recording)) {
         return STATUS_OK;
     }
     const state_energy energy = motion_energy(&run->arm, run->motion, state);
@@ -244,33 +245,80 @@ static status record_within(arm_run *run, const double *times, int count)
 
 status arm_run_record_first_row(arm_run *run)
 {
-    run->recording->state.rows.next = 1;
+    row_record *rows = &run->recording->state.rows;
+    for (int g = 0; g < ROW_GRIDS; g++) {
+        rows->next[g] = 1;
+    }
     return arm_run_record_row(run, run->motion->state, 0);
 }
 
-// The time between two rows of the grid [s].
-static double grid_interval(const arm_run *run)
+// The time between two rows of a grid [s]; HUGE_VAL: it has no row after the first.
+static double grid_interval(const arm_run *run, int grid)
 {
-    return run->recording->scenario->parameters.method.step;
+    const recording *r = run->recording;
+    const bool is_asked = r->options->rows_every > 0;
+    double interval = HUGE_VAL;
+    if (grid == GRID_OF_STEPS && (r->options->keep_trace || !is_asked)) {
+        interval = r->scenario->parameters.method.step;
+    } else if (grid == GRID_ASKED_FOR && is_asked) {
+        interval = r->options->rows_every;
+    }
+    return interval;
+}
+
+// How far apart instants of the grids may lie that are one [s].
+static double grid_tolerance(const arm_run *run)
+{
+    return GRID_TOLERANCE *
+           smaller(grid_interval(run, GRID_OF_STEPS), grid_interval(run, GRID_ASKED_FOR));
+}
+
+// The instant of the next row of any grid [s]; of two that are one, that of the later
+// grid.
+static double next_row(const arm_run *run)
+{
+    const row_record *rows = &run->recording->state.rows;
+    double time = HUGE_VAL;
+    for (int g = 0; g < ROW_GRIDS; g++) {
+        const double next = (double)rows->next[g] * grid_interval(run, g);
+        if (next <= time + grid_tolerance(run)) {
+            time = next;
+        }
+    }
+    return time;
+}
+
+// Goes on to the row behind that of an instant [s] on each grid that has one there.
+static void pass_row(arm_run *run, double time)
+{
+    row_record *rows = &run->recording->state.rows;
+    for (int g = 0; g < ROW_GRIDS; g++) {
+        const double next = (double)rows->next[g] * grid_interval(run, g);
+        if (next <= time + grid_tolerance(run)) {
+            rows->next[g]++;
+        }
+    }
 }
 
 status arm_run_record_last_row(arm_run *run, double time)
 {
-    const double interval = grid_interval(run);
-    const double last_row = (double)(run->recording->state.rows.next - 1) * interval;
-    if (last_row < time - GRID_TOLERANCE * interval) {
-        return arm_run_record_row(run, run->motion->state, 0);
+    // a grid that has a row there has gone on behind it
+    const row_record *rows = &run->recording->state.rows;
+    for (int g = 0; g < ROW_GRIDS; g++) {
+        const double interval = grid_interval(run, g);
+        if (isfinite(interval) &&
+            (double)(rows->next[g] - 1) * interval >= time - GRID_TOLERANCE * interval) {
+            return STATUS_OK;
+        }
     }
-    return STATUS_OK;
+    return arm_run_record_row(run, run->motion->state, 0);
 }
 
-// Records the rows of the grid before an instant [s], which lie within the step just made
-// or under way.
+// Records the rows of the grids before an instant [s], which lie within the step just
+// made or under way.
 static status record_rows_before(arm_run *run, double instant)
 {
-    row_record *rows = &run->recording->state.rows;
-    const double interval = grid_interval(run);
-    double time = (double)rows->next * interval;
+    double time = next_row(run);
 
     // as many at a time as the engine computes together
     while (time < instant) {
@@ -278,8 +326,8 @@ static status record_rows_before(arm_run *run, double instant)
         int count = 0;
         for (; count < MOTION_TOGETHER && time < instant; count++) {
             times[count] = time;
-            rows->next++;
-            time = (double)rows->next * interval;
+            pass_row(run, time);
+            time = next_row(run);
         }
         TRY(record_within(run, times, count));
     }
@@ -288,29 +336,27 @@ static status record_rows_before(arm_run *run, double instant)
 
 status arm_run_record_rows_to(arm_run *run, double time)
 {
-    if (!run->recording->options->keep_trace) {
+    if (!recording_has_rows(run->recording)) {
         return STATUS_OK;
     }
-    return record_rows_before(run, time + GRID_TOLERANCE * grid_interval(run));
+    return record_rows_before(run, time + grid_tolerance(run));
 }
 
-// Records the rows of the grid that lie within the step just made. A row of the grid at
+// Records the rows of the grids that lie within the step just made. A row of a grid at
 // the step's end is left to the event there, if there is one.
 static status record_grid(arm_run *run, bool at_event)
 {
-    row_record *rows = &run->recording->state.rows;
     motion *m = run->motion;
-    const double interval = grid_interval(run), now = m->state[SLOT_TIME];
-    const double tolerance = GRID_TOLERANCE * interval;
+    const double now = m->state[SLOT_TIME], tolerance = grid_tolerance(run);
 
     // those before its end
     TRY(record_rows_before(run, now - tolerance));
-    if ((double)rows->next * interval > now + tolerance) {
+    if (next_row(run) > now + tolerance) {
         return STATUS_OK;
     }
 
     // one at its end; an event records its own rows
-    rows->next++;
+    pass_row(run, now);
     if (!at_event) {
         TRY(arm_run_record_row(run, m->state, 0));
     }
@@ -503,7 +549,7 @@ status arm_run_record_step(arm_run *run, bool at_event)
 
     TRY(balance);
     TRY(arm_run_record_forces(run));
-    if (!r->options->keep_trace) {
+    if (!recording_has_rows(r)) {
         return STATUS_OK;
     }
     return record_grid(run, at_event);

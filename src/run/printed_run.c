@@ -122,10 +122,10 @@ static sensed_motion sensed_at(const printed_row *row)
                            .force = row->force};
 }
 
-// Adds the motion's present row to the trace, if the run keeps rows.
+// Records the motion's present row, if the run has rows.
 static status keep_row(const printed_run *p)
 {
-    if (!p->recording->options->keep_trace) {
+    if (!recording_has_rows(p->recording)) {
         return STATUS_OK;
     }
     const sample sampled = present_row(p);

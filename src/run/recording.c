@@ -92,6 +92,9 @@ void recording_end(recording *r, status code, const fault *f)
 {
     run_result *result = r->result;
     rig_destroy(r->rig);
+    if (!r->options->keep_trace) {
+        result->trace.row_count = 0;
+    }
     recording_tell_fault(&result->summary, code, f);
     result->summary.cpu_time_s = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - r->begun_cpu;
     result->summary.wall_time_s = clock_seconds(CLOCK_MONOTONIC) - r->begun_at;
@@ -193,6 +196,16 @@ status recording_add_row(recording *r, const sample *row, const double *angles,
         t->rows[t->row_count - 1].time = t->rows[t->row_count - 2].time;
     }
     recording_publish(r, row->time);
+
+    // of rows that nobody keeps the last one stays, which the next is compared with
+    if (s == STATUS_OK && r->options->take_row != NULL) {
+        const size_t last = t->row_count - 1;
+        s = r->options->take_row(r->options->row_context, &t->rows[last],
+                                 t->angles + last * (size_t)t->angle_count);
+    }
+    if (!r->options->keep_trace) {
+        trace_keep_last_row(t);
+    }
     return s;
 }
 

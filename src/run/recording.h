@@ -30,9 +30,12 @@ typedef struct force_record {
     force_bounds in_window;    // of its integral since that window began [N s]
 } force_record;
 
+// The grids that rows lie on: multiples of method.step, and those of rows_every.
+enum { GRID_OF_STEPS, GRID_ASKED_FOR, ROW_GRIDS };
+
 // Rows and ledger so far, of the corrected model.
 typedef struct row_record {
-    long next;            // number of the next row of the grid
+    long next[ROW_GRIDS]; // number of the next row of each grid
     bool separated;       // gap above SEPARATION_GAP in the present flight
     double energy_put_in; // sum of what motor and actions did or took over each step [J]
 } row_record;
@@ -88,6 +91,12 @@ static inline bool recording_asked_to_stop(recording *r)
     return r->options->stepped ? stop_is_set(&r->stop) : stop_requested(&r->stop);
 }
 
+// Whether rows are recorded, to be kept or to be taken.
+static inline bool recording_has_rows(const recording *r)
+{
+    return r->options->keep_trace || r->options->take_row != NULL;
+}
+
 // Whether the last row is one of this instant [s].
 bool recording_has_row_at(const recording *r, double time);
 
@@ -101,8 +110,9 @@ status recording_set(recording *r, const action *todo, double time, fault *f)
     __attribute__((warn_unused_result));
 
 // Adds a row, which may stand in its place of the trace already, with all angles [rad]
-// and velocities [rad/s] and lets it be seen. On the rig, whose clock and the grid round
-// differently, rows of one instant have one time. STATUS_NO_MEMORY.
+// and velocities [rad/s], lets it be seen and hands it to whoever takes rows. On the rig,
+// whose clock and the grid round differently, rows of one instant have one time.
+// STATUS_NO_MEMORY, or what the taker says.
 status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities) __attribute__((warn_unused_result));
 

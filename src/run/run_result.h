@@ -55,7 +55,11 @@ static inline bool run_monitor_stops(const run_monitor *monitor)
 void run_monitor_count(run_monitor *monitor);
 
 typedef struct run_options {
-    bool keep_trace;      // false keeps no rows (events and summary only)
+    bool keep_trace;     // false keeps no rows (events and summary only)
+    row_taker *take_row; // gets each row as it is recorded, kept or not; NULL: nobody
+    void *row_context;   // its first argument
+    double rows_every;   // rows at multiples of this, too [s], of what is not kept in the
+                         // place of those at multiples of method.step; 0: none
     run_monitor *monitor; // NULL: nobody looks on
     const atomic_bool
         *abandon; // without a monitor: becomes true where the run is to end at once

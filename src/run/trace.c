@@ -133,6 +133,19 @@ status trace_add_row(trace *t, const sample *row, const double *angles,
     return STATUS_OK;
 }
 
+void trace_keep_last_row(trace *t)
+{
+    if (t->row_count <= 1) {
+        return;
+    }
+
+    const size_t n = (size_t)t->angle_count, last = t->row_count - 1;
+    t->rows[0] = t->rows[last];
+    memcpy(t->angles, t->angles + last * n, n * sizeof *t->angles);
+    memcpy(t->velocities, t->velocities + last * n, n * sizeof *t->velocities);
+    t->row_count = 1;
+}
+
 status trace_add_event(trace *t, event e)
 {
     shared_array *events = &t->arrays[TRACE_EVENTS];
@@ -195,23 +208,32 @@ size_t trace_row_on_side(const trace *t, double time, size_t side)
     return r;
 }
 
+sample trace_between(const sample *a, const sample *b, double time)
+{
+    assert(a->time < b->time);
+    sample value = *a;
+
+    // a sample is a row of numbers
+    const double share = (time - a->time) / (b->time - a->time);
+    const double *from = (const double *)a, *to = (const double *)b;
+    for (int i = 0; i < SIGNALS_AT_MOST; i++) {
+        if (!signal_is_state(i)) {
+            ((double *)&value)[i] = from[i] + share * (to[i] - from[i]);
+        }
+    }
+    value.time = time;
+    value.impulse = 0;
+    return value;
+}
+
 sample trace_sample_at(const trace *t, double time, size_t side)
 {
     const size_t r = trace_row_on_side(t, time, side);
     const sample *a = &t->rows[r];
-    sample value = *a;
     if (same_instant(a->time, time) || time < a->time || r + 1 >= t->row_count) {
-        return value;
+        return *a;
     }
-
-    // a sample is a row of numbers
-    const sample *b = &t->rows[r + 1];
-    const double share = (time - a->time) / (b->time - a->time);
-    const double *from = (const double *)a, *to = (const double *)b;
-    for (int i = 0; i < SIGNALS_AT_MOST; i++) {
-        ((double *)&value)[i] = from[i] + share * (to[i] - from[i]);
-    }
-    return value;
+    return trace_between(a, &t->rows[r + 1], time);
 }
 
 bool trace_has(const trace *t, int signal)

@@ -86,6 +86,13 @@ status trace_add_row(trace *t, const sample *row, const double *angles,
                      const double *velocities);
 status trace_add_event(trace *t, event e);
 
+// Forgets all rows but the last one.
+void trace_keep_last_row(trace *t);
+
+// Takes a row with the angles of all links [rad], the hub's first if it has one. What it
+// returns, if it is not STATUS_OK, ends the work that rows come from.
+typedef status row_taker(void *context, const sample *row, const double *angles);
+
 // How many rows have a time that is not after `time` [s].
 size_t trace_rows_until(const trace *t, double time);
 
@@ -99,7 +106,11 @@ size_t trace_side(const trace *t, size_t row);
 // The row of an instant [s] on a side, the last row before it if it has none.
 size_t trace_row_on_side(const trace *t, double time, size_t side);
 
-// What a run was at an instant [s] on a side: that row, or straight between two rows.
+// What a run was at an instant [s] between the times of two rows, b after a: straight
+// between them; a state is a's until b, and no impulse acts.
+sample trace_between(const sample *a, const sample *b, double time);
+
+// What a run was at an instant [s] on a side: that row, or trace_between two rows.
 sample trace_sample_at(const trace *t, double time, size_t side);
 
 // Whether any row holds a finite value of the signal.
