@@ -1,7 +1,9 @@
 // The peak force of a scenario in C, and as it stands in C++.
 //
-//     cc -o peak peak.c $(pkg-config --cflags --libs impactlab) && ./peak
-//     corrected/first-impact
+//     cc -o peak peak.c $(pkg-config --cflags --libs impactlab)
+//     ./peak corrected/first-impact
+//
+// Of a prefix of your own, docs/howto/library.md tells the rest.
 #include <impactlab/impactlab.h>
 #include <stdio.h>
 

@@ -1,6 +1,7 @@
 #include "src/base/shipped.h"
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -11,14 +12,11 @@
 #include "src/base/build_config.h"
 
 static const struct {
-    const char *in_tree, *in_prefix, *configured;
+    const char *in_prefix, *configured;
 } places[] = {
-    [SHIPPED_SCENARIOS] = {IMPACTLAB_SOURCE_SCENARIOS, IMPACTLAB_SCENARIOS_IN_PREFIX,
-                           IMPACTLAB_SCENARIOS},
-    [SHIPPED_MANUAL] = {IMPACTLAB_SOURCE_FOLDER, IMPACTLAB_MANUAL_IN_PREFIX,
-                        IMPACTLAB_MANUAL},
-    [SHIPPED_PROGRAM] = {IMPACTLAB_BUILD_FOLDER "/impactlab", IMPACTLAB_PROGRAM_IN_PREFIX,
-                         IMPACTLAB_PROGRAM},
+    [SHIPPED_SCENARIOS] = {IMPACTLAB_SCENARIOS_IN_PREFIX, IMPACTLAB_SCENARIOS},
+    [SHIPPED_MANUAL] = {IMPACTLAB_MANUAL_IN_PREFIX, IMPACTLAB_MANUAL},
+    [SHIPPED_PROGRAM] = {IMPACTLAB_PROGRAM_IN_PREFIX, IMPACTLAB_PROGRAM},
 };
 
 // The file that this very code was loaded from: the program, or the shared library in
@@ -41,35 +39,29 @@ static bool own_file(char *path)
     return true;
 }
 
-// FOLDER/NAME if it is there, to be freed. True unless there is no memory; *path is NULL
-// if there is no such file.
+// FOLDER/NAME, links followed, if it is there, to be freed. True unless there is no
+// memory; *path is NULL if there is no such file.
 static bool path_in(const char *folder, const char *name, char **path)
 {
-    if (asprintf(path, "%s/%s", folder, name) < 0) {
-        *path = NULL;
+    char *joined;
+    *path = NULL;
+    if (asprintf(&joined, "%s/%s", folder, name) < 0) {
         return false;
     }
-    if (access(*path, F_OK) != 0) {
-        free(*path);
-        *path = NULL;
-    }
-    return true;
+    *path = realpath(joined, NULL);
+    const bool known = *path != NULL || errno != ENOMEM;
+    free(joined);
+    return known;
 }
 
-// Beside this program: in the source tree, under the prefix, or where it was configured.
+// Beside this program, under the prefix or in a build folder, or where it was configured.
 char *shipped_path(shipped_part part)
 {
-    char *path;
+    // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1,
+    // BUILD/src/api/libimpactlab.so.1
+    char *path, *end = NULL;
     char own[PATH_MAX];
-    const size_t build = strlen(IMPACTLAB_BUILD_FOLDER);
-    bool known = own_file(own);
-    if (known && strncmp(own, IMPACTLAB_BUILD_FOLDER, build) == 0 && own[build] == '/') {
-        return strdup(places[part].in_tree);
-    }
-
-    // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1
-    char *end = NULL;
-    if (known) {
+    if (own_file(own)) {
         end = strrchr(own, '/');
     }
     for (int above = 0; above < 4 && end != NULL && end != own; above++) {

@@ -8,10 +8,10 @@ typedef enum shipped_part {
     SHIPPED_PROGRAM,   // impactlab
 } shipped_part;
 
-// The part's path, to be freed, whether it is there or not; NULL without memory. What was
-// built in a tree has the tree's; else the prefix is looked for above the file that this
-// code was loaded from, and where no prefix has the part it is the place that the build
-// was set up for.
+// The part's path, to be freed, whether it is there or not; NULL without memory. The
+// prefix is looked for above the file that this code was loaded from (a build folder is
+// laid out as one), and where no prefix has the part it is the place that the build was
+// set up for.
 char *shipped_path(shipped_part part);
 
 // The version of the program, "0.2.0".

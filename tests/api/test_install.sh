@@ -1,6 +1,6 @@
 #!/bin/bash
 # An installation that has moved: programs outside the tree build against it and give the peak of
-# `impactlab run` to the last digit, in C, C++, statically, in Python; the same law as a plug-in and
+# `impactlab run` to the last digit, in C, C++, statically, in Python, and within another project; the same law as a plug-in and
 # as a process in Python and Octave gives one peak.
 #
 #   test_install.sh BUILD_FOLDER SOURCE_ROOT MESON...
@@ -10,6 +10,7 @@ set -euo pipefail
 # shellcheck source=tests/expect.sh
 . "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../expect.sh"
 build=$1
+source=$2
 shift 2
 work=$folder
 unset IMPACTLAB_SCENARIOS IMPACTLAB_LIBRARY IMPACTLAB_PROGRAM PYTHONPATH
@@ -99,6 +100,32 @@ if command -v pkg-config >/dev/null; then
 else
     skip "pkg-config is missing"
 fi
+
+# no file of the installation knows where it was built
+for file in "$library"/libimpactlab.* "$lab"; do
+    LC_ALL=C grep -qaF "$build" "$file" && fail "${file##*/} names the build folder"
+    LC_ALL=C grep -qaF "$source/" "$file" && fail "${file##*/} names the source tree"
+done
+
+# the commands of the page as they stand, for a prefix in the home
+if command -v pkg-config >/dev/null; then
+    mkdir home && cp -r "$prefix" home/.local && cp peak.c home
+    grep -A 3 '^export PKG_CONFIG_PATH' "$source/docs/howto/library.md" | grep -v '^```' >home/commands
+    if grep -q pcfiledir "$library/pkgconfig/impactlab.pc"; then
+        expect "the page's program in C" "$(cd home && env -u PKG_CONFIG_PATH HOME="$work/home" sh -eu ./commands)"
+    else
+        skip "the build folder was set up without pkgconfig.relocatable, no test of the page's commands"
+    fi
+fi
+
+# within another project of Meson it is the library
+mkdir -p host/subprojects && cp peak.c host && ln -s "$source" host/subprojects/impactlab
+cat >host/meson.build <<'EOF'
+project('host', 'c')
+executable('peak', 'peak.c', dependencies: dependency('impactlab', fallback: 'impactlab'))
+EOF
+"$@" setup host/build host >log 2>&1 && "$@" compile -C host/build peak >>log 2>&1 || fail "$(tail log)"
+expect "the program of a Meson project" "$(host/build/peak corrected/first-impact)"
 
 # Python, from where the installation put its package
 package=$(dirname -- "$(dirname -- "$(find "$prefix" -path '*/impactlab/__init__.py' | head -n 1)")")
