@@ -1,12 +1,13 @@
 // A law for a small board: comes to a wall whose place is only roughly known, without
 // vibration and no faster than the commanded force allows, and presses by a passive hub
-// whose rest moves. No estimator of the arm, no search, 21 numbers and a page of states.
+// whose rest moves. No estimator of the arm, no search, 23 numbers and a page of states.
 //
-// Travel. The hub's speed changes in ramps that last one period of the arm's free mode,
-// after which the beam does not vibrate (Singer and Seering, ASME Journal of Dynamic
-// Systems, Measurement and Control 112, 1990). The last stretch before the believed wall
-// goes at the touch speed v = v0 + v1 f: what the force f takes up in a time, m v/f, is
-// then much the same for every f. Behind the believed wall it goes faster and faster.
+// Travel. The hub's speed changes in two equal ramps, half a period of the arm's free
+// mode apart, after which the beam does not vibrate: the second takes back what the first
+// stirred up (Singer and Seering, ASME Journal of Dynamic Systems, Measurement and
+// Control 112, 1990). The last stretch before the believed wall goes at the touch speed
+// v = v0 + v1 f: what the force f takes up in a time, m v/f, is then much the same for
+// every f. Behind the believed wall it goes faster and faster.
 // With a force limit the whole way goes at the speed whose touch keeps to the limit,
 // wherever the wall is. A touch without vibration at the rate w turns the hub against the
 // pressed beam at x' = w (A - J2)/M, and the pulse of a hub that coasts has the peak
@@ -45,6 +46,8 @@ enum {
     FORCE_WANTED,
     THRESHOLD,
     FORCE_LIMIT,
+    CRUISE,
+    RAMP,
     TOUCH_SPEED,
     TOUCH_SPEED_PER_NEWTON,
     SLOW_BEFORE,
@@ -72,45 +75,47 @@ static const controller_parameter table[PARAMETERS] = {
     [FORCE_WANTED] = {.name = "force"},
     [THRESHOLD] = {.name = "contact_threshold"},
     [FORCE_LIMIT] = {.name = "force_limit"},
-    [TOUCH_SPEED] = {"touch_speed", "m/s", 0.109, 0, 1, "speed of the tip at the wall"},
-    [TOUCH_SPEED_PER_NEWTON] = {"touch_speed_per_newton", "m/s/N", 0.0269, 0, 1,
+    [CRUISE] = {"cruise", "rad/s", 0.836, 0.01, 10, "travel of the hub"},
+    [RAMP] = {"ramp", "", 0.48, 0.01, 2,
+              "length of a ramp of the speed, in periods of the free mode"},
+    [TOUCH_SPEED] = {"touch_speed", "m/s", 0.127, 0, 1, "speed of the tip at the wall"},
+    [TOUCH_SPEED_PER_NEWTON] = {"touch_speed_per_newton", "m/s/N", 0.0252, 0, 1,
                                 "and what each newton of the command adds to it"},
-    [SLOW_BEFORE] = {"slow_before", "rad", 0.0107, 0, 1,
+    [SLOW_BEFORE] = {"slow_before", "rad", 0.0103, 0, 1,
                      "way before the believed wall at that speed"},
-    [SLOW_BEHIND] = {"slow_behind", "rad", 0.0317, 0, 1,
+    [SLOW_BEHIND] = {"slow_behind", "rad", 0.0364, 0, 1,
                      "way behind the believed wall at that speed"},
-    [SEARCH] = {"search", "m/s2", 0.614, 0, 10, "acceleration of the tip after that"},
-    [TRAVEL_DAMPING] = {"travel_damping", "N m s/rad", 9.23, 0, 10,
+    [SEARCH] = {"search", "m/s2", 0.79, 0, 10, "acceleration of the tip after that"},
+    [TRAVEL_DAMPING] = {"travel_damping", "N m s/rad", 7.5, 0, 10,
                         "of the hub about its path"},
-    [TRAVEL_STIFFNESS] = {"travel_stiffness", "N m/rad", 0.699, 0, 100,
+    [TRAVEL_STIFFNESS] = {"travel_stiffness", "N m/rad", 0.187, 0, 100,
                           "of the hub about its path"},
-    [TRAVEL_FRICTION] = {"travel_friction", "", 0.659, 0, 2,
+    [TRAVEL_FRICTION] = {"travel_friction", "", 0.71, 0, 2,
                          "share of the friction that is compensated on the way"},
-    [PRESS_DAMPING] = {"press_damping", "N m s/rad", 0.41, 0, 10,
+    [PRESS_DAMPING] = {"press_damping", "N m s/rad", 0.392, 0, 10,
                        "of the hub about its rest"},
-    [DAMPING_LIMIT] = {"damping_limit", "", 0.316, 0, 10,
+    [DAMPING_LIMIT] = {"damping_limit", "", 0.418, 0, 10,
                        "largest damping, times the loop's lag over the hub's inertia"},
-    [GROWTH] = {"growth", "1/s", 7.12, 0.1, 100, "of the planned force at first"},
-    [RISE_TIME] = {"rise_time", "s", 0.0759, 0.001, 1,
+    [GROWTH] = {"growth", "1/s", 9.44, 0.1, 100, "of the planned force at first"},
+    [RISE_TIME] = {"rise_time", "s", 0.0798, 0.001, 1,
                    "time constant of the planned force at last"},
-    [RISE_INERTIA] = {"rise_inertia", "", 0.856, 0, 3,
+    [RISE_INERTIA] = {"rise_inertia", "", 0.768, 0, 3,
                       "share of the inertia's torque that is fed forward"},
-    [INTEGRAL] = {"integral", "1/s", 4.36, 0, 100, "of the force's error"},
-    [DEAD_BAND] = {"dead_band", "", 0.0376, 0, 0.2,
+    [INTEGRAL] = {"integral", "1/s", 8.17, 0, 100, "of the force's error"},
+    [DEAD_BAND] = {"dead_band", "", 0.0404, 0, 0.2,
                    "error that it leaves, as a share of the command"},
-    [UNBROKEN] = {"unbroken", "s", 0.0755, 0, 1, "contact after which it works"},
-    [LOST] = {"lost", "s", 0.0984, 0, 1, "time without the wall after which it is lost"},
-    [DECAY] = {"decay", "1/s", 5.17, 0, 100, "of plan and integral then"},
-    [LANDING_SPEED] = {"landing_speed", "m/s/N", 0.245, 0.001, 1,
+    [UNBROKEN] = {"unbroken", "s", 0.0902, 0, 1, "contact after which it works"},
+    [LOST] = {"lost", "s", 0.165, 0, 1, "time without the wall after which it is lost"},
+    [DECAY] = {"decay", "1/s", 3.52, 0, 100, "of plan and integral then"},
+    [LANDING_SPEED] = {"landing_speed", "m/s/N", 0.184, 0.001, 1,
                        "speed of the tip that comes back, for each newton"},
-    [FELT] = {"felt", "", 0.447, 0.1, 2, "share of contact_threshold that is a touch"},
-    [JUMP] = {"jump", "rad/s", 0.112, 0.005, 10, "of the hub's rate that is a blow"},
+    [FELT] = {"felt", "", 0.285, 0.1, 2, "share of contact_threshold that is a touch"},
+    [JUMP] = {"jump", "rad/s", 0.389, 0.005, 10, "of the hub's rate that is a blow"},
 };
 
 enum { DELAYED = 7 }; // periods of delay that the reference is kept for, at most
 
 #define LAG_OF_SENSORS    2e-3 // what filters of the sensors add to the loop's lag [s]
-#define FASTEST           1.0  // travel of the hub [rad/s]
 #define FRICTION_RATE     0.03 // within which compensated friction turns round [rad/s]
 #define STICTION_RATE     0.02 // the same of the hub's own [rad/s]
 #define LIMIT_SHARE       0.88 // of the force limit that the pulse may reach
@@ -137,6 +142,8 @@ typedef struct touch_design {
     double hub_stiffness; // of the hub against a tip on the wall [N m/rad]
     double frequency;     // of the free mode [rad/s]
     double cosine, sine;  // of its turn in a period
+    double ramp;          // a ramp of the path's speed [s]
+    double apart;         // the second after the first [s]
     double compliance;    // of the hub in it, 1/Jh - 1/J [1/(kg m2)]
     double touch_rate;    // of the hub at the wall [rad/s]
     double largest_rate;  // of the hub on the way and in search [rad/s]
@@ -240,13 +247,20 @@ static void design_speeds(touch_design *d, const controller_setup *rig, const do
 {
     const double force = fabs(p[FORCE_WANTED]);
     d->touch_rate = (p[TOUCH_SPEED] + p[TOUCH_SPEED_PER_NEWTON] * force) / d->length;
-    d->largest_rate = FASTEST;
+    d->largest_rate = p[CRUISE];
     d->landing_rate = p[LANDING_SPEED] * force / d->length;
     if (p[FORCE_LIMIT] > 0) {
         d->largest_rate = rate_within(d, rig, LIMIT_SHARE * p[FORCE_LIMIT]);
         d->touch_rate = d->largest_rate;
         d->landing_rate = fmin(d->landing_rate, d->largest_rate);
     }
+}
+
+// The ramps in which the speed changes, half a period of the free mode apart.
+static void design_ramps(touch_design *d, const double *p)
+{
+    d->ramp = p[RAMP] * 2 * M_PI / d->frequency;
+    d->apart = M_PI / d->frequency;
 }
 
 static const char *tune(void *memory, const controller_setup *setup)
@@ -261,7 +275,7 @@ static const char *tune(void *memory, const controller_setup *setup)
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     design_arm(d, setup);
-
+    design_ramps(d, m->p);
     design_speeds(d, setup, m->p);
 
     // what the loop's lag leaves of the dampers
@@ -283,7 +297,6 @@ static const char *tune(void *memory, const controller_setup *setup)
 static void begin_travel(touch_memory *m, double encoder)
 {
     const touch_design *d = &m->design;
-    const double period = 2 * M_PI / d->frequency;
     m->started = true;
     m->angle = m->angle_before = m->path = encoder;
     m->momentum = (d->link_inertia + d->coupling) * encoder;
@@ -291,7 +304,7 @@ static void begin_travel(touch_memory *m, double encoder)
         m->hub_path[i] = encoder;
     }
     const double way = fmax(0, m->rig.wall_angle - m->p[SLOW_BEFORE] - encoder -
-                                   d->touch_rate * period / 2);
+                                   d->touch_rate * (d->ramp + d->apart) / 2);
     m->cruise_end = way / d->largest_rate;
     m->cruise_rate = way > 0 ? d->largest_rate : d->touch_rate;
 }
@@ -369,19 +382,26 @@ static void remember(double *values, double value)
     values[0] = value;
 }
 
+// The share of a change of speed that is made a time after its begin.
+static double changed(const touch_design *d, double time)
+{
+    const double first = bounded(time / d->ramp, 0, 1);
+    const double second = bounded((time - d->apart) / d->ramp, 0, 1);
+    return (first + second) / 2;
+}
+
 // The torque along the path [N m].
 static double travel_torque(touch_memory *m)
 {
     const touch_design *d = &m->design;
     const controller_setup *rig = &m->rig;
-    const double period = rig->period, ramp = 2 * M_PI / d->frequency;
+    const double period = rig->period;
 
-    // the rigid arm's speed: up and down in one period of the mode each, then in search
+    // the rigid arm's speed: up, down to the touch speed, then in search
     const double before = m->path_rate;
     m->time += period;
-    m->path_rate = m->cruise_rate * bounded(m->time / ramp, 0, 1) -
-                   (m->cruise_rate - d->touch_rate) *
-                       bounded((m->time - m->cruise_end) / ramp, 0, 1);
+    m->path_rate = m->cruise_rate * changed(d, m->time) -
+                   (m->cruise_rate - d->touch_rate) * changed(d, m->time - m->cruise_end);
     if (m->path > rig->wall_angle + m->p[SLOW_BEHIND]) {
         const double faster = m->p[SEARCH] / d->length * period;
         const double most = fmin(FASTEST_SEARCH, d->largest_rate - d->touch_rate);
