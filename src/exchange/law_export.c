@@ -15,7 +15,7 @@
 // The laws that keep to their memory from the first call on. Those of one file have one
 // text.
 #define TOUCH_FILE                                                                       \
-    "touch_memory", {touch_double, touch_single}, {16000, 800},                          \
+    "touch_memory", {touch_double, touch_single}, {17000, 850},                          \
     {                                                                                    \
         424, 248                                                                         \
     }
