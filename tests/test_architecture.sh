@@ -15,7 +15,7 @@ rooms="src/base src/tables src/arm src/thesis src/contact src/engines src/engine
     src/study/store src/exchange src/api/impactlab src/api
     render/page render/plot render/scene render/figures
     ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands
-    ui/commands/studies ui/commands/exchange ui"
+    ui/commands/studies ui/commands/exchange ui/web ui"
 
 # the room of a file; what a controller is stands below all that the rig is made of
 room_of() {
@@ -125,9 +125,9 @@ done < <(grep -oHE '`(src|render|ui|tests|scenarios|docs)/[A-Za-z0-9_./*-]*[A-Za
 [ "$lost" = 0 ]
 
 # "caller callee" of each two files of the program of which one uses what the other defines, as the
-# linker sees it; copies of a file for other widths of vectors are left out
+# linker sees it; copies of a file for other widths of vectors, and for the page, are left out
 list_calls() {
-    (cd "$1" && find . -name '*.c.o' -path '*.a.p/*' ! -path './tests/*' ! -path '*_[1248].a.p/*' \
+    (cd "$1" && find . -name '*.c.o' -path '*.a.p/*' ! -path './tests/*' ! -path './web-module/*' ! -path '*_[1248].a.p/*' \
         ! -path '*_avx2.a.p/*' -print0 | xargs -0 nm -A) | awk '
             { file = $1; sub(/:[0-9a-f]*$/, "", file); sub(/.*\//, "", file); sub(/\.c\.o$/, "", file) }
             $(NF - 1) ~ /^[TDRBCVW]$/ && !($NF in home) { home[$NF] = file }

@@ -1,11 +1,8 @@
 #include "src/base/shared_array.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/resource.h>
 
 #include "src/base/fault.h"
 
@@ -16,37 +13,8 @@ enum {
 
 // --- chunks ----------------------------------------------------------------------------
 
-// Chunks are mapped side by side, so that elements are an ordinary array, and the kernel
+// Chunks are put side by side, so that elements are an ordinary array, and the kernel
 // counts who has them.
-
-// Maps a chunk of its own at a place. False if there is no memory to be had.
-static bool map_own_chunk(void *at)
-{
-    if (mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE,
-             MAP_SHARED | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != at) {
-        return false;
-    }
-
-    // memory is asked for here, where its want is an error and not a signal; an old
-    // kernel cannot
-    return madvise(at, ARRAY_CHUNK, MADV_POPULATE_WRITE) == 0 || errno == EINVAL;
-}
-
-// Maps a chunk a second time at a place. False if that cannot be.
-static bool map_again(void *at, void *chunk)
-{
-    // memory of the size 0 that becomes larger is mapped a second time
-    if (mremap(chunk, 0, ARRAY_CHUNK, MREMAP_MAYMOVE | MREMAP_FIXED, at) != MAP_FAILED) {
-        return true;
-    }
-
-    // valgrind knows no such call and gets a copy
-    if (errno != EINVAL || !map_own_chunk(at)) {
-        return false;
-    }
-    memcpy(at, chunk, ARRAY_CHUNK);
-    return true;
-}
 
 // Puts a chunk behind the end of an array: memory of its own, or that of the same chunk
 // of `from`.
@@ -59,9 +27,9 @@ static bool append_chunk(shared_array *a, const shared_array *from)
     char *at = (char *)a->base + a->mapped;
     bool mapped;
     if (from == NULL) {
-        mapped = map_own_chunk(at);
+        mapped = chunks_put(at);
     } else {
-        mapped = map_again(at, (char *)from->base + a->mapped);
+        mapped = chunks_put_again(at, (char *)from->base + a->mapped);
     }
     if (!mapped) {
         return false;
@@ -85,11 +53,13 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
 {
     assert(least > 0 && least <= most);
     shared_array_init(a, size);
+    if (!chunks_exist()) {
+        return true; // a plain one does where no other thread reads
+    }
 
     // a limited address space is for others, too
-    struct rlimit limit;
-    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur / PART / size < most) {
-        most = limit.rlim_cur / PART / size;
+    if (chunks_address_space() / PART / size < most) {
+        most = chunks_address_space() / PART / size;
     }
     if (most < least) {
         most = least;
@@ -98,9 +68,8 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
     // half as much where it has no room for the most
     for (; most >= least; most /= 2) {
         size_t reserved = (most * size / ARRAY_CHUNK + 1) * ARRAY_CHUNK;
-        void *base = mmap(NULL, reserved, PROT_NONE,
-                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-        if (base != MAP_FAILED) {
+        void *base = chunks_reserve(reserved);
+        if (base != NULL) {
             a->base = base;
             a->reserved = reserved;
             return true;
@@ -176,7 +145,7 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 void shared_array_finish(shared_array *a)
 {
     if (a->reserved > 0) {
-        munmap(a->base, a->reserved);
+        chunks_release(a->base, a->reserved);
     } else {
         free(a->base);
     }

@@ -5,13 +5,14 @@
 // chunks as it grows. So another thread can read what has been published to it while the
 // owner appends, and a second array can have the same chunks for its beginning instead of
 // a copy. A chunk goes when the last array that has it does; elements once appended must
-// not be changed.
+// not be changed. On a machine without chunks (src/base/chunks.h) all arrays are plain
+// ones.
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { ARRAY_CHUNK = 128 * 1024 }; // [bytes]
+#include "src/base/chunks.h"
 
 typedef struct shared_array {
     void *base;      // of the elements

@@ -160,8 +160,10 @@ static ssize_t write_to_file(void *context, const char *bytes, size_t size)
     whole_file *w = context;
     size_t done = 0;
     while (done < size) {
-        const ssize_t written =
-            TEMP_FAILURE_RETRY(write(w->descriptor, bytes + done, size - done));
+        const ssize_t written = write(w->descriptor, bytes + done, size - done);
+        if (written < 0 && errno == EINTR) {
+            continue; // a signal came first
+        }
         if (written < 0) {
             if (w->reason == 0) {
                 w->reason = errno;

@@ -134,6 +134,45 @@ json_t *export_run(const scenario *s, const run_result *result)
     return object;
 }
 
+// What one predictor says.
+static json_t *prediction_object(const prediction_answer *answer)
+{
+    const prediction *p = &answer->prediction;
+
+    // a predictor that has no answer says why
+    const char *message;
+    json_t *holds;
+    if (prediction_known(answer)) {
+        message = answer->note;
+        holds = json_boolean(p->holds);
+    } else {
+        message = prediction_reason(answer);
+        holds = json_null();
+    }
+
+    return json_of("method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
+                   "equivalent_restitution:n inductance_changes_peak_N:n",
+                   answer->name, message, holds, p->force, p->delay, p->impulse,
+                   p->restitution, p->inductance);
+}
+
+json_t *export_predictions(const scenario *s, const run_result *result, const sample *row,
+                           const prediction_answer answers[PREDICTOR_COUNT])
+{
+    const landing *simulated = &result->landing;
+
+    // one entry each, even where a predictor has no answer
+    json_t *predictions = json_array();
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        json_add(predictions, prediction_object(&answers[i]));
+    }
+    json_t *simulation =
+        json_of("peak_N:n time_to_peak_s:n impulse_Ns:n", simulated->peak,
+                simulated->time_to_peak, simulated->impulse);
+    return json_of("scenario:t t_s:n predictions:o simulation:o", s->name, row->time,
+                   predictions, simulation);
+}
+
 // Fills in the indices of the signals that have a column: all but optional ones without a
 // value in the run. Returns how many there are.
 static int csv_signals(const trace *t, int *columns)

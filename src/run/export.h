@@ -20,6 +20,11 @@ json_t *export_parameters(const parameters *p);
 // json_decref.
 json_t *export_without_effect(const scenario *s);
 
+// The object of `predict --json`: what the predictors answered about a row of the run
+// (predict_first_contact), beside the simulation. The caller calls json_decref.
+json_t *export_predictions(const scenario *s, const run_result *result, const sample *row,
+                           const prediction_answer answers[PREDICTOR_COUNT]);
+
 // Writes a trace as CSV: one header row of name[unit], then a row for each sample; for
 // more than two links the angle of every body follows as angle_1[rad], angle_2[rad]...
 // Errors stay in the stream.

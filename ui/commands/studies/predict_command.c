@@ -6,6 +6,7 @@
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
+#include "src/run/export.h"
 #include "src/run/run.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
@@ -65,44 +66,11 @@ typedef struct predicted_contact {
 
 // --- numbers ---------------------------------------------------------------------------
 
-// What one predictor says.
-static json_t *answer_json(const prediction_answer *answer)
-{
-    const prediction *p = &answer->prediction;
-
-    // a predictor that has no answer says why
-    const char *message;
-    json_t *holds;
-    if (prediction_known(answer)) {
-        message = answer->note;
-        holds = json_boolean(p->holds);
-    } else {
-        message = prediction_reason(answer);
-        holds = json_null();
-    }
-
-    return json_of("method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
-                   "equivalent_restitution:n inductance_changes_peak_N:n",
-                   answer->name, message, holds, p->force, p->delay, p->impulse,
-                   p->restitution, p->inductance);
-}
-
 // What all predictors say, beside the simulation.
 static json_t *predictions_json(const void *found)
 {
     const predicted_contact *p = found;
-    const landing *simulated = &p->result->landing;
-
-    // one entry each, even where a predictor has no answer
-    json_t *predictions = json_array();
-    for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        json_add(predictions, answer_json(&p->answers[i]));
-    }
-    json_t *simulation =
-        json_of("peak_N:n time_to_peak_s:n impulse_Ns:n", simulated->peak,
-                simulated->time_to_peak, simulated->impulse);
-    return json_of("scenario:t t_s:n predictions:o simulation:o", p->scenario->name,
-                   p->row->time, predictions, simulation);
+    return export_predictions(p->scenario, p->result, p->row, p->answers);
 }
 
 // The contact, and the instant from which it is predicted.
