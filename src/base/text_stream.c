@@ -62,7 +62,9 @@ char *text_stream_close(text_stream *t, size_t *length)
 
 // --- what was lost for want of memory --------------------------------------------------
 
-static _Thread_local bool lost;
+// of every thread, found without the loader's help, which a library would have to be
+// linked with
+static _Thread_local bool lost __attribute__((tls_model("initial-exec")));
 
 void loss_unless(bool kept)
 {

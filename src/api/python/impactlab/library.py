@@ -10,9 +10,7 @@ import sys
 import threading
 from ctypes import POINTER, c_char, c_char_p, c_double, c_int, c_size_t, c_void_p
 from pathlib import Path
-from typing import Any, Callable, Iterable, Iterator, List, Optional
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Optional
 
 KEEP_ROWS = 1
 COMMAND = 2
@@ -67,7 +65,7 @@ def number(value: Any, what: str) -> float:
     """A number. Texts and truth values are none, although float() takes them."""
     if type(value) is float:
         return value
-    if not isinstance(value, (str, bytes, bytearray, bool, np.bool_)):
+    if not isinstance(value, (str, bytes, bytearray, bool)) and getattr(value, "dtype", 0) != bool:
         try:
             return float(value)
         except OverflowError:
@@ -120,17 +118,26 @@ class Readings:
     __slots__ = ()
     _fields_: Any
 
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(missing("a reading has no", name, [field[0] for field in self._fields_]))
+    if not TYPE_CHECKING:  # checkers know the names by themselves
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        raise AttributeError(f"a reading cannot be set, {name} neither")
+        def __getattr__(self, name: str) -> Any:
+            raise AttributeError(missing("a reading has no", name, [field[0] for field in self._fields_]))
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            raise AttributeError(f"a reading cannot be set, {name} neither")
 
 
 class ReadingStruct(Readings, ctypes.Structure):
     """What the sensors read; NaN where one is not fitted."""
 
     __slots__ = ()
+    time: float
+    encoder: float
+    tachometer: float
+    force: float
+    piezo_force: float
+    film: float
+    accelerometer: float
     _fields_ = [(name, c_double) for name in
                 ("time", "encoder", "tachometer", "force", "piezo_force", "film", "accelerometer")]
 
@@ -151,6 +158,16 @@ class InputStruct(Readings, ctypes.Structure):
     """What a controller sees at a sample: the sensors' readings and the command in effect."""
 
     __slots__ = ()
+    time: float
+    encoder: float
+    tachometer: float
+    force: float
+    voltage: float
+    piezo_force: float
+    film: float
+    accelerometer: float
+    wanted_mode: int
+    predicted_force: float
     _fields_ = [("time", c_double), ("encoder", c_double), ("tachometer", c_double),
                 ("force", c_double), ("voltage", c_double), ("piezo_force", c_double),
                 ("film", c_double), ("accelerometer", c_double), ("wanted_mode", c_int),
@@ -178,12 +195,16 @@ CONTROLLER_INTERFACE = 5
 
 
 def _places() -> Iterator[str]:
-    """Where the library may be: as told, beside an installed package, in a build of the tree."""
+    """Where the library may be: as told, in the package, beside an installed one, in a build of the
+    tree."""
     told = os.environ.get("IMPACTLAB_LIBRARY")
     if told:
         yield told
         return
     here = Path(__file__).resolve()
+    if here.with_name(SONAME).exists():
+        yield str(here.with_name(SONAME))
+        return
     for folder in list(here.parents)[1:6]:
         for library in sorted(folder.glob("lib*/" + SONAME)) + sorted(folder.glob("*/" + SONAME)):
             yield str(library)
@@ -374,16 +395,18 @@ class Owner:
     def __reduce_ex__(self, protocol: Any) -> Any:
         raise TypeError(f"a {self._kind} can be neither copied nor pickled: {self._instead}")
 
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(missing(f"a {self._kind} has no", name, dir(self)))
+    if not TYPE_CHECKING:  # checkers know the names by themselves
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not name.startswith("_"):
-            there = getattr(type(self), name, None)
-            if there is None or callable(there) or getattr(there, "fset", self) is None:
-                getattr(self, name)
-                raise AttributeError(f"{name} of a {self._kind} cannot be set")
-        object.__setattr__(self, name, value)
+        def __getattr__(self, name: str) -> Any:
+            raise AttributeError(missing(f"a {self._kind} has no", name, dir(self)))
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            if not name.startswith("_"):
+                there = getattr(type(self), name, None)
+                if there is None or callable(there) or getattr(there, "fset", self) is None:
+                    getattr(self, name)
+                    raise AttributeError(f"{name} of a {self._kind} cannot be set")
+            object.__setattr__(self, name, value)
 
 
 def take_text(name: str, handle: Any) -> str:

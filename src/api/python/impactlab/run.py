@@ -9,12 +9,19 @@ import os
 import subprocess
 import tempfile
 from ctypes import POINTER, byref, c_char_p, c_double, c_size_t, c_void_p
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Protocol
+from typing import (TYPE_CHECKING, Any, Callable, Dict, List, Mapping, NamedTuple, Optional,
+                    Protocol)
 
 import numpy as np
 
 from . import library
 from .library import Callbacks, ErrorStruct, Owner, Table, call, error_of, lib, missing, number, text
+
+
+if TYPE_CHECKING:
+    from ._tables import Quantities
+else:
+    Quantities = object
 
 
 class Source(Protocol):
@@ -90,7 +97,7 @@ def _view(owner: Any, address: Optional[int], rows: int, columns: int) -> np.nda
     return array
 
 
-class Run(Owner):
+class Run(Owner, Quantities):
     """A run. `run["force"]` is a signal as an array, `run.peak_force_N` one of its quantities."""
 
     _kind = "run"
@@ -149,10 +156,12 @@ class Run(Owner):
         """Every number that the run comes to, NaN where one did not occur."""
         return dict(zip(QUANTITIES, map(float, self._quantities)))
 
-    def __getattr__(self, key: str) -> float:
-        if key not in _INDEX:
-            raise AttributeError(missing("a run has no", key, dir(self)))
-        return float(self._quantities[_INDEX[key]])
+    if not TYPE_CHECKING:  # checkers know the names by their stubs
+
+        def __getattr__(self, key: str) -> float:
+            if key not in _INDEX:
+                raise AttributeError(missing("a run has no", key, dir(self)))
+            return float(self._quantities[_INDEX[key]])
 
     def __dir__(self) -> List[str]:
         return [*super().__dir__(), *QUANTITIES]

@@ -6,7 +6,7 @@ import ctypes
 import operator
 import os
 from ctypes import POINTER, byref, c_char_p, c_double, c_size_t
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -14,8 +14,13 @@ from . import library
 from .library import KEEP_ROWS, Callbacks, Error, Owner, Table, call, lib, missing
 from .run import QUANTITIES, Batch, Run, run_with
 
+if TYPE_CHECKING:
+    from ._tables import Parameters
+else:
+    Parameters = object
+
 Value = Union[float, int, bool, str, Sequence[float]]
-Controller = Callable[[Any], Union[float, Mapping[str, float]]]
+Controller = Callable[[library.InputStruct], Union[float, Mapping[str, float]]]
 
 
 class Parameter:
@@ -57,20 +62,23 @@ class Group:
     """The parameters of one group, such as `scenario.motor`, as attributes."""
 
     _names: Tuple[str, ...] = ()
+    _scenario: "Scenario"
 
     def __init__(self, scenario: "Scenario") -> None:
         object.__setattr__(self, "_scenario", scenario)
 
-    def __getattr__(self, name: str) -> Any:
-        group = type(self).__name__
-        raise AttributeError(missing("there is no parameter", f"{group}.{name}",
-                                     [f"{group}.{known}" for known in self._names])
-                             + " There are: " + ", ".join(self._names))
+    if not TYPE_CHECKING:  # checkers know the names by their stubs
 
-    def __setattr__(self, name: str, value: Value) -> None:
-        if name not in self._names:
-            getattr(self, name)
-        object.__setattr__(self, name, value)
+        def __getattr__(self, name: str) -> Any:
+            group = type(self).__name__
+            raise AttributeError(missing("there is no parameter", f"{group}.{name}",
+                                         [f"{group}.{known}" for known in self._names])
+                                 + " There are: " + ", ".join(self._names))
+
+        def __setattr__(self, name: str, value: Value) -> None:
+            if name not in self._names:
+                getattr(self, name)
+            object.__setattr__(self, name, value)
 
     def __reduce__(self) -> Any:
         return getattr, (self._scenario, type(self).__name__)
@@ -150,7 +158,7 @@ def _restored(kind: type, yaml: str, name: str, allowed: bool) -> "Scenario":
     return made.allow_code(allowed)
 
 
-class Scenario(Owner):
+class Scenario(Owner, Parameters):
     """A scenario: `Scenario("corrected/first-impact")`, a file, or without a name one of defaults.
 
     Its parameters are attributes (`scenario.motor.voltage = 2`) and items
@@ -198,14 +206,16 @@ class Scenario(Owner):
         with self._lock:
             return _restored, (type(self), self.yaml, self.name, self._allowed)
 
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(missing("a scenario has no", name, [*dir(self), *PARAMETERS]))
+    if not TYPE_CHECKING:  # checkers know the names by their stubs
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name in _GROUPS:
-            raise AttributeError(f"{name} is a group of parameters, expected one of them, such as "
-                                 f"scenario.{name}.{_GROUPS[name]._names[0]} = ...")
-        super().__setattr__(name, value)
+        def __getattr__(self, name: str) -> Any:
+            raise AttributeError(missing("a scenario has no", name, [*dir(self), *PARAMETERS]))
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            if name in _GROUPS:
+                raise AttributeError(f"{name} is a group of parameters, expected one of them, such as "
+                                     f"scenario.{name}.{_GROUPS[name]._names[0]} = ...")
+            super().__setattr__(name, value)
 
     @property
     def name(self) -> str:
