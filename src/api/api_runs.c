@@ -5,7 +5,9 @@
 #include "src/base/json.h"
 #include "src/rig/controller.h"
 #include "src/run/export.h"
+#include "src/run/row_grid.h"
 #include "src/run/run.h"
+#include "src/run/saved_run.h"
 
 // Checks that the rig can use a controller that a program gives.
 static int check_law(const controller *law, impactlab_error *error)
@@ -185,6 +187,89 @@ int impactlab_run_event(const impactlab_run *run, size_t index, impactlab_event 
     *told =
         (impactlab_event){e->time, event_name(e->kind), e->impulse, e->speed, e->loss};
     return 1;
+}
+
+// Rows beyond this are taken for a mistyped interval.
+#define MOST_GRID_ROWS 1e9
+
+// Where the rows of a grid go: signals in the order of their table.
+typedef struct grid_rows {
+    double *values;
+    size_t most, count;
+} grid_rows;
+
+static status take_grid_row(void *context, const sample *row, const double *angles)
+{
+    (void)angles;
+    grid_rows *rows = context;
+    for (int i = 0; i < signal_count && rows->count < rows->most; i++) {
+        rows->values[rows->count * (size_t)signal_count + (size_t)i] =
+            signal_value(row, i);
+    }
+    rows->count++;
+    return STATUS_OK;
+}
+
+int impactlab_run_grid(const impactlab_run *run, double every, double *values,
+                       size_t most, size_t *count, impactlab_error *error)
+{
+    API_NEEDS(error, run, count);
+    const trace *t = &run->result.trace;
+    if (!(every > 0) ||
+        (t->row_count > 0 && t->rows[t->row_count - 1].time / every > MOST_GRID_ROWS)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "rows every %g s, expected more than 0 and at most %g rows",
+                        every, MOST_GRID_ROWS);
+    }
+    grid_rows rows = {.values = values, .most = values != NULL ? most : 0};
+    if (row_grid_of_trace(t, every, take_grid_row, &rows) != STATUS_OK) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a row");
+    }
+    *count = rows.count;
+    return api_done(error);
+}
+
+// --- as bytes --------------------------------------------------------------------------
+
+size_t impactlab_run_saved_size(const impactlab_run *run)
+{
+    if (run != NULL) {
+        return run_saved_size(&run->result);
+    }
+    return 0;
+}
+
+int impactlab_run_save(const impactlab_run *run, void *bytes, size_t size,
+                       impactlab_error *error)
+{
+    API_NEEDS(error, run, bytes);
+    const size_t needed = run_saved_size(&run->result);
+    if (size < needed) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "this run has %zu bytes, but there is room for %zu", needed,
+                        size);
+    }
+    run_save(&run->result, &run->scenario, bytes);
+    return api_done(error);
+}
+
+int impactlab_run_restore(impactlab_run **run, const impactlab_scenario *handle,
+                          const void *bytes, size_t size, impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    *run = NULL;
+    API_NEEDS(error, handle, bytes);
+    impactlab_run *made = api_new_run(&handle->scenario, error);
+    if (made == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
+    fault f = {.text = "", .path = ""};
+    if (run_restore(&made->result, &made->scenario, bytes, size, &f) != STATUS_OK) {
+        impactlab_run_destroy(made);
+        return api_error(error, &f);
+    }
+    *run = made;
+    return api_done(error);
 }
 
 // --- as texts --------------------------------------------------------------------------

@@ -9,7 +9,8 @@ symbols=$2
 shift 2
 object=$output.o
 ld -r -o "$object" --whole-archive "$@"
-objcopy --keep-global-symbols="$symbols" "$object"
+sed 's/@@.*//' "$symbols" >"$object.names" # the names without their versions
+objcopy --keep-global-symbols="$object.names" "$object"
 rm -f "$output"
 ar rcs "$output" "$object"
-rm -f "$object"
+rm -f "$object" "$object.names"

@@ -2,14 +2,12 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/random.h"
-#include "src/base/shipped.h"
 #include "src/rig/controller_values.h"
 #include "src/run/run_driver.h"
+#include "src/run/saved_block.h"
 
 // A multiple of method.step that is nearer than this share of it is the present instant.
 #define GRID_TOLERANCE 1e-9
@@ -20,11 +18,11 @@ struct run_loop {
     given_law law;
     run_result result;
     run_driver driver;
-    double volts;         // the command of a commanded loop [V]
-    bool ended;           // it has come to the end of the run
-    status failed;        // what stopped it before its end, if anything
-    fault fault;          // and the sentence for that
-    uint64_t fingerprint; // saved states of loops with the same one can be restored
+    double volts;    // the command of a commanded loop [V]
+    bool ended;      // it has come to the end of the run
+    status failed;   // what stopped it before its end, if anything
+    fault fault;     // and the sentence for that
+    uint64_t origin; // saved states of loops with the same one can be restored
 };
 
 // --- the controller of a commanded loop ------------------------------------------------
@@ -44,47 +42,23 @@ static const controller commanded_law =
 
 // --- beginning and end -----------------------------------------------------------------
 
-// Continues a 64-bit FNV-1a hash with a text and a byte that ends it.
-static uint64_t hash_text(uint64_t hash, const char *text)
+// A hash of what two loops must have in common to exchange states: scenario, version and
+// the controller's name. A controller of somebody else may keep addresses in its memory,
+// so that its states are for the same loop only.
+static uint64_t origin_of(const run_loop *l)
 {
-    for (; *text != '\0'; text++) {
-        hash = (hash ^ (unsigned char)*text) * 0x100000001b3u;
-    }
-    return (hash ^ 0xff) * 0x100000001b3u;
-}
-
-// A hash of what two loops must have in common to exchange states: the version, every
-// parameter, the script and the controller's name. A controller of somebody else may keep
-// addresses in its memory, so that its states are for the same loop only.
-static uint64_t fingerprint_of(const run_loop *l)
-{
-    // version and parameters
     const scenario *s = &l->scenario;
-    char text[PARAMETER_TEXT_SIZE];
-    uint64_t hash = hash_text(0xcbf29ce484222325u, lab_version());
-    for (int i = 0; i < parameter_count; i++) {
-        parameter_format(&s->parameters, i, text, sizeof text);
-        hash = hash_text(hash, text);
-    }
-
-    // the script
-    for (int i = 0; i < s->action_count; i++) {
-        const action *a = &s->actions[i];
-        snprintf(text, sizeof text, "%a %d %d %a", a->time, (int)a->kind, a->parameter,
-                 a->value);
-        hash = hash_text(hash_text(hash, text), a->text);
-    }
-
-    // the controller
     const rig *r = l->driver.recording.rig;
+    uint64_t origin = block_origin(s);
     const bool foreign =
         r != NULL && r->law != &commanded_law &&
         (l->law.law != NULL || controller_of(s->parameters.control.law) == NULL);
     if (foreign) {
-        snprintf(text, sizeof text, "%p", (const void *)l);
-        hash = hash_text(hash, text);
+        char address[32];
+        snprintf(address, sizeof address, "%p", (const void *)l);
+        origin = block_origin_with(origin, address);
     }
-    return hash_text(hash, r == NULL ? "bare" : r->law->name);
+    return block_origin_with(origin, r == NULL ? "bare" : r->law->name);
 }
 
 status loop_create(run_loop **created, const scenario *s, const loop_options *options,
@@ -120,7 +94,7 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
         loop_destroy(l);
         return code;
     }
-    l->fingerprint = fingerprint_of(l);
+    l->origin = origin_of(l);
     *created = l;
     return STATUS_OK;
 }
@@ -332,79 +306,26 @@ const scenario *loop_scenario(const run_loop *l)
 
 // --- the state as bytes ----------------------------------------------------------------
 
-// The first part of a saved state, without padding; the bytes of the driver follow.
-typedef struct saved_head {
-    char magic[8];    // SAVED_MAGIC
-    uint64_t version; // SAVED_VERSION, of how the bytes are laid out
-    uint64_t size;    // of the whole block [bytes]
-    uint64_t fingerprint;
-    uint64_t check; // check_of what follows it
+// What stands between the head of a saved state and the bytes of the driver.
+typedef struct saved_loop {
     uint64_t ended;
     double volts;
-} saved_head;
+} saved_loop;
 
-#define SAVED_MAGIC   "armstate"
-#define SAVED_VERSION 1
-
-static_assert(sizeof(saved_head) == 7 * sizeof(uint64_t), "the head has no padding");
+static const block_kind loop_block = {"armstate", 1, "state of a loop"};
 
 size_t loop_saved_size(const run_loop *l)
 {
-    return sizeof(saved_head) + driver_saved_size(&l->driver);
-}
-
-// A 64-bit checksum of the bytes of a block after the head's `check`. Eight bytes at a
-// time go into the state of splitmix64, whose mixing makes other bytes have the same sum
-// by chance only, once in 2^64.
-static uint64_t check_of(const char *bytes, size_t size)
-{
-    uint64_t check = size;
-    size_t at = offsetof(saved_head, check) + sizeof check;
-    for (; at < size; at += sizeof check) {
-        uint64_t word = 0;
-        memcpy(&word, bytes + at, size - at < sizeof word ? size - at : sizeof word);
-        word ^= check;
-        check = splitmix64_next(&word);
-    }
-    return check;
+    return sizeof(block_head) + sizeof(saved_loop) + driver_saved_size(&l->driver);
 }
 
 void loop_save(const run_loop *l, void *bytes)
 {
-    const size_t size = loop_saved_size(l);
-    saved_head head = {.version = SAVED_VERSION,
-                       .size = size,
-                       .fingerprint = l->fingerprint,
-                       .ended = l->ended,
-                       .volts = l->volts};
-    memcpy(head.magic, SAVED_MAGIC, sizeof head.magic);
-    memcpy(bytes, &head, sizeof head);
-    driver_save(&l->driver, (char *)bytes + sizeof head);
-    head.check = check_of(bytes, size);
-    memcpy(bytes, &head, sizeof head);
-}
-
-// Says in f why bytes are no whole state of this loop.
-static status check_saved(const run_loop *l, const void *bytes, size_t size, fault *f)
-{
-    const size_t expected = loop_saved_size(l);
-    saved_head head;
-    FAULT_IF(size < sizeof head || memcmp(bytes, SAVED_MAGIC, sizeof head.magic) != 0, f,
-             STATUS_BAD_ARGUMENT, "the bytes are no saved state of a loop");
-    memcpy(&head, bytes, sizeof head);
-    FAULT_IF(head.version != SAVED_VERSION, f, STATUS_BAD_ARGUMENT,
-             "the state is laid out as in version %llu, expected %d",
-             (unsigned long long)head.version, SAVED_VERSION);
-
-    // then its sum, before anything that it says is relied on
-    FAULT_IF(head.size != size, f, STATUS_BAD_ARGUMENT,
-             "a state of this loop has %zu bytes, but %zu were given", expected, size);
-    FAULT_IF(head.check != check_of(bytes, size), f, STATUS_BAD_ARGUMENT,
-             "the state is damaged, expected the bytes as they were saved");
-    FAULT_IF(head.fingerprint != l->fingerprint || size != expected, f,
-             STATUS_BAD_ARGUMENT,
-             "the state is of another scenario, another controller or another version");
-    return STATUS_OK;
+    const saved_loop own = {.ended = l->ended, .volts = l->volts};
+    char *at = (char *)bytes + sizeof(block_head);
+    memcpy(at, &own, sizeof own);
+    driver_save(&l->driver, at + sizeof own);
+    block_seal(bytes, loop_saved_size(l), &loop_block, l->origin);
 }
 
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
@@ -413,15 +334,18 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
     FAULT_IF(on != NULL && on->process != NULL, f, STATUS_BAD_ARGUMENT,
              "a program as the controller cannot go back to a saved state");
 
-    TRY(check_saved(l, bytes, size, f));
+    // the bytes must be a whole state of this loop
+    TRY(block_check(bytes, size, &loop_block, l->origin, f));
+    assert(size == loop_saved_size(l));
 
     // go back to it
-    saved_head head;
-    memcpy(&head, bytes, sizeof head);
-    l->volts = head.volts;
-    l->ended = head.ended != 0;
+    const char *at = (const char *)bytes + sizeof(block_head);
+    saved_loop own;
+    memcpy(&own, at, sizeof own);
+    l->volts = own.volts;
+    l->ended = own.ended != 0;
     l->failed = STATUS_OK;
     l->fault = (fault){.text = "", .path = ""};
-    driver_restore(&l->driver, (const char *)bytes + sizeof head);
+    driver_restore(&l->driver, at + sizeof own);
     return STATUS_OK;
 }

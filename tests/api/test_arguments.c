@@ -82,6 +82,14 @@ TEST_OF_HANDLES(runs_say_what_they_lack)
     LACKS("run", impactlab_run_predictions(NULL, said, 4, &count, error));
     LACKS("predictions", impactlab_run_predictions(h->run, NULL, 4, &count, error));
     LACKS("written", impactlab_run_predictions(h->run, said, 4, NULL, error));
+    LACKS("run", impactlab_run_grid(NULL, 1, &value, 1, &count, error));
+    LACKS("count", impactlab_run_grid(h->run, 1, &value, 1, NULL, error));
+    LACKS("run", impactlab_run_save(NULL, &value, 1, error));
+    LACKS("bytes", impactlab_run_save(h->run, NULL, 1, error));
+    LACKS("run", impactlab_run_restore(NULL, h->scenario, &value, 1, error));
+    LACKS("scenario", impactlab_run_restore(&made, NULL, &value, 1, error));
+    LACKS("bytes", impactlab_run_restore(&made, h->scenario, NULL, 1, error));
+    assert_null(made);
     LACKS("scenario", impactlab_modes(NULL, 0, 0, &value, NULL, 1, &count, error));
     LACKS("frequencies",
           impactlab_modes(h->scenario, 0, 0, NULL, NULL, 1, &count, error));

@@ -441,6 +441,100 @@ TEST(states_come_back)
     }
 }
 
+// What a run tells, as one text.
+static char *told_by(const impactlab_run *run)
+{
+    char *json, *csv, *all;
+    impactlab_prediction said[8];
+    size_t count = 0;
+    check_done(impactlab_run_json(run, &json, &told));
+    check_done(impactlab_run_csv(run, &csv, &told));
+    const int predicted =
+        impactlab_run_predictions(run, said, COUNT(said), &count, &told);
+    assert_true(asprintf(&all, "%s%s%s %d %zu %.17g %zu", json, csv,
+                         impactlab_run_message(run), predicted, count,
+                         count > 0 ? said[0].peak : 0,
+                         impactlab_run_event_count(run)) > 0);
+    impactlab_text_free(json);
+    impactlab_text_free(csv);
+    return all;
+}
+
+// A run goes into bytes and comes back as it was, with rows, without, and one that
+// stopped on its way; other bytes and another scenario's are refused.
+TEST(runs_come_back)
+{
+    static const char *const names[] = {"corrected/first-impact", "compare/hybrid",
+                                        "corrected/twenty-links",
+                                        "compare/hybrid-printed-arm"};
+    for (EACH(c, names)) {
+        own_scenario *scenario = opened(*c);
+        for (int flags = 0; flags <= IMPACTLAB_KEEP_ROWS; flags++) {
+            own_run *run = run_of(scenario, flags), *again = NULL, *none = NULL;
+            const size_t size = impactlab_run_saved_size(run);
+            SCOPED(free_kept) unsigned char *bytes = malloc(size);
+            SCOPED(free_kept) unsigned char *odd = malloc(size + 1);
+            check_refused(impactlab_run_save(run, bytes, size - 1, &told), "room");
+            check_done(impactlab_run_save(run, bytes, size, &told));
+            memcpy(odd + 1, bytes, size);
+            check_done(impactlab_run_restore(&again, scenario, odd + 1, size, &told));
+            SCOPED(free_kept) char *was = told_by(run), *is = told_by(again);
+            assert_string_equal(is, was);
+
+            bytes[size / 2] ^= 4;
+            check_refused(impactlab_run_restore(&none, scenario, bytes, size, &told),
+                          "damaged");
+            check_refused(impactlab_run_restore(&none, scenario, bytes, 3, &told), "no");
+            own_scenario *other = opened(*c);
+            set(other, "run.duration", "0.3");
+            check_refused(impactlab_run_restore(&none, other, odd + 1, size, &told),
+                          "another scenario");
+            assert_null(none);
+        }
+    }
+}
+
+// Rows on a grid: an instant each, with the signals that the run has there last.
+TEST(rows_on_a_grid)
+{
+    own_scenario *scenario = opened("compare/hybrid");
+    own_run *run = run_of(scenario, IMPACTLAB_KEEP_ROWS);
+    const double every = 0.01, end = number_of(scenario, "run.duration");
+    size_t width = 0, count, written;
+    while (impactlab_signal_at(width) != NULL) {
+        width++;
+    }
+    check_done(impactlab_run_grid(run, every, NULL, 0, &count, &told));
+    assert_int_equal(count, 1 + lround(end / every));
+    SCOPED(free_kept) double *rows = calloc(count, width * sizeof *rows);
+    check_done(impactlab_run_grid(run, every, rows, count - 1, &written, &told));
+    assert_int_equal(written, count);
+    assert_true(rows[(count - 1) * width] == 0);
+    check_done(impactlab_run_grid(run, every, rows, count, &written, &told));
+
+    impactlab_series time, force;
+    check_done(impactlab_run_signal(run, "time", &time, &told));
+    check_done(impactlab_run_signal(run, "force", &force, &told));
+    const size_t step = time.stride / sizeof(double);
+    size_t column = 0, row = 0;
+    while (strcmp(impactlab_signal_at(column)->name, "force") != 0) {
+        column++;
+    }
+    for (size_t i = 0; i < count; i++) {
+        check_same(rows[i * width], (double)i * every);
+        while (row + 1 < time.count &&
+               time.values[(row + 1) * step] < (double)i * every + 1e-9) {
+            row++;
+        }
+        check_same(rows[i * width + column], force.values[row * step]);
+    }
+
+    static const double wrong[] = {0, -1, NAN, 1e-12};
+    for (EACH(w, wrong)) {
+        check_refused(impactlab_run_grid(run, *w, NULL, 0, &count, &told), "more than 0");
+    }
+}
+
 // All signals at once are each of them, to the last bit; a short array gets the first.
 TEST(all_signals_at_once)
 {

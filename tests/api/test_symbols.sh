@@ -17,6 +17,14 @@ if ! diff "$work/listed" "$work/exported"; then
     exit 1
 fi
 
+# the archive has the same names
+archive=${library%.so*}.a
+if [ -e "$archive" ]; then
+    nm --defined-only -g "$archive" | awk 'NF == 3 { print $3 }' | LC_ALL=C sort >"$work/archived"
+    sed 's/@@.*//' "$source/tests/api/symbols.txt" | LC_ALL=C sort | diff - "$work/archived" ||
+        { echo "the archive has other names than tests/api/symbols.txt lists"; exit 1; }
+fi
+
 # the headers by themselves, as an installation has them
 mkdir -p "$work/include/impactlab"
 cp "$source/src/api/impactlab/impactlab.h" "$source/src/rig/controller.h" "$work/include/impactlab"

@@ -287,11 +287,31 @@ IMPACTLAB_EXPORT int impactlab_run_velocities(const impactlab_run *run,
                                               impactlab_table *table,
                                               impactlab_error *error);
 
+// All signals on a uniform grid: one row at each of 0, every, 2 every ... [s] up to the
+// run's end, of as many numbers as impactlab_signal_at has signals. Of several rows at
+// one instant it has the last; between rows it is straight, but for states, which stay,
+// and impulses, which act at their instant alone. At most `most` rows are written, *count
+// says how many there are (values may be NULL for that).
+IMPACTLAB_EXPORT int impactlab_run_grid(const impactlab_run *run, double every,
+                                        double *values, size_t most, size_t *count,
+                                        impactlab_error *error);
+
 // The events of the run in the order of time: their number; and event `index`, which
 // returns 1, or 0 if there is none.
 IMPACTLAB_EXPORT size_t impactlab_run_event_count(const impactlab_run *run);
 IMPACTLAB_EXPORT int impactlab_run_event(const impactlab_run *run, size_t index,
                                          impactlab_event *event);
+
+// The whole run as a block of bytes: its size, saving it, and the same run again, given
+// its scenario, in the same version on the same kind of machine. Bytes that are damaged
+// or of another scenario are refused.
+IMPACTLAB_EXPORT size_t impactlab_run_saved_size(const impactlab_run *run);
+IMPACTLAB_EXPORT int impactlab_run_save(const impactlab_run *run, void *bytes,
+                                        size_t size, impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_run_restore(impactlab_run **run,
+                                           const impactlab_scenario *scenario,
+                                           const void *bytes, size_t size,
+                                           impactlab_error *error);
 
 // The texts that `impactlab run --json` and `--csv` write; impactlab_text_free frees
 // them.
