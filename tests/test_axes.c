@@ -201,7 +201,7 @@ TEST(test_the_visible_part_follows_the_cursor_until_it_is_panned)
 TEST(test_a_controlled_run_shows_readings_and_commands)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
-    press(&ex, ":seek 0.65<Enter>28");
+    press(&ex, ":panes 123458<Enter>:seek 0.65<Enter>");
     KEPT_TEXT(text) = picture(&ex, 160, 60, GLYPHS_BRAILLE);
     for (EACH_TEXT(c, "force_reading", "calculated_force", "encoder", "desired_angle",
                    "tachometer", "command 2.284", "controller_mode force")) {

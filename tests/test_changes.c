@@ -148,17 +148,15 @@ TEST(test_predictors_take_the_voltage_in_force)
                                 answer.prediction.force, 1e3 * answer.prediction.delay));
 }
 
-TEST(test_predictors_say_that_they_know_two_links)
+// The first two predictors know two links only, and none knows the printed model's arm
+// linearised: those that know nothing are not named.
+TEST(test_predictors_that_know_nothing_are_silent)
 {
-    static const char said[] = "the first two know two links";
     OPEN_EXPLORER(ex, "corrected/five-links");
-    assert_shows(&ex, said);
-    press_shows(&ex, ":set arm.links 2<Enter>", "!the first two know two links");
-    press_shows(&ex, ":set arm.links 1<Enter>", said);
-
-    // a predictor that does not apply to the arm's model says so
+    press_shows(&ex, "i", "touching now: linearised 2.614 N");
+    press_shows(&ex, ":set arm.links 2<Enter>i", "energy 1.25", "impact dynamics 1.66");
     OPEN_EXPLORER(printed, "thesis/fig-3-4");
-    assert_shows(&printed, "linearised      does not apply");
+    press_shows(&printed, "i", "energy ", "!linearised");
 }
 
 TEST(test_values_that_have_no_room_are_cut_visibly)
@@ -182,8 +180,7 @@ TEST(test_changes_to_come_are_seen_edited_and_dropped)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press_shows(&ex, ":seek 0.5<Enter>:set motor.voltage 2<Enter>:seek 0.7<Enter>p<Home>",
-                "\u25cf 2 changes, \u25cb 2 later",
-                "0.50000 s  change motor.voltage = 2");
+                "\u25cf 2 changes, \u25cb 2 later");
     press_shows(&ex, ":changes<Enter>", "1 \u25cb   0.50000 s     motor.voltage = 2 V",
                 "2 \u25cb   0.70000 s     push 0.01 N s");
 
@@ -344,12 +341,12 @@ static void assert_panes(explorer *ex, int height, const char *wanted)
 TEST(test_panes_follow_scenario_and_height)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    assert_panes(&ex, 24, "134");
-    assert_panes(&ex, 60, "12345");
+    assert_panes(&ex, 24, "14");
+    assert_panes(&ex, 60, "1234");
     press(&ex, ":open thesis/fig-3-2<Enter>");
     assert_panes(&ex, 24, "123");
     press(&ex, ":open thesis/fig-3-5<Enter>");
-    assert_panes(&ex, 24, "130");
+    assert_panes(&ex, 24, "140");
     press(&ex, ":open thesis/fig-5-5<Enter>");
     assert_panes(&ex, 24, "135");
 
@@ -363,7 +360,7 @@ TEST(test_panes_follow_scenario_and_height)
 TEST(test_setpoints_and_limits_are_lines)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
-    assert_shows(&ex, "\u2508force");
+    assert_shows(&ex, "\u2508force_limit", "\u2508command");
     press_shows(&ex, ":axis -12 12 5<Enter>", "\u2508voltage_limit");
     press_shows(&ex, ":open corrected/first-impact<Enter>2", "\u2508angle",
                 "!\u2508force");
@@ -383,11 +380,11 @@ TEST(test_ticks_are_even_and_names_whole)
     press_shows(&ex, "<Tab>", "first_acceleration", "\u25c6 contact point");
 
     // keys reach the last value
-    assert_shows(&ex, "!energy_residual");
+    assert_shows_at(&ex, 120, 30, "!energy_residual");
     for (int i = 0; i < 60; i++) {
         press(&ex, "j");
     }
-    assert_shows(&ex, "energy_residual");
+    assert_shows_at(&ex, 120, 30, "energy_residual");
 }
 
 // The head of the arrow stands in the column of its shaft, wherever the tip is.

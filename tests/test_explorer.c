@@ -55,7 +55,7 @@ TEST(test_playing_shows_an_impact_within_seconds)
     assert_shows(&ex, "free flight");
     press(&ex, "<Space>");
     act_advance(&ex.model, &ex.view, &ex.input, 2);
-    assert_shows(&ex, "impact 0.0443 N s", "in contact");
+    assert_shows(&ex, "44.3 mN s", "in contact");
     act_advance(&ex.model, &ex.view, &ex.input, 100);
     assert_false(ex.view.playback.playing);
     assert_shows(&ex, "end of the run");
@@ -245,8 +245,8 @@ TEST(test_many_links_are_predicted_while_the_run_rests)
     check_close(w[0], row->hub_velocity, 0);
     check_close(w[1], row->first_velocity, 0); // behind the beam's root
     check_close(w[t->angle_count - 1], row->last_velocity, 0);
-    assert_shows(&ex, "linearised      2.614 N in 7 ms");
-    press_shows(&ex, ":seek 0.1<Enter><Space>", "linearised      -");
+    assert_shows(&ex, "touching now: linearised 2.614 N in 7 ms");
+    press_shows(&ex, ":seek 0.1<Enter><Space>", "touching now: -");
 }
 
 static int chance(random_generator *r, int limit)

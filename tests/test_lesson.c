@@ -77,7 +77,7 @@ TEST(test_every_step_fits_a_small_screen)
     for (int i = 0; i < l->step_count; i++) {
         ex.model.lesson = (lesson_progress){.on = true, .step = i};
         assert_shows_at(&ex, 80, 24, "lesson, step");
-        assert_shows_at(&ex, 80, 24, "energy");
+        assert_shows_at(&ex, 80, 24, "touching now: ");
 
         // its last word is on the screen
         const char *say = l->steps[i].say, *last = strrchr(say, ' ');
@@ -96,21 +96,21 @@ TEST(test_what_a_step_names_is_on_the_screen)
     } named[] = {
         {"impulse-and-force", 1, false, "\u25c6"}, // the diamond
         {"impulse-and-force", 2, false, "impact at 0.293"},
-        {"impulse-and-force", 2, false, "0.04426 N s"},
+        {"impulse-and-force", 2, false, "0.04426"},
         {"impulse-and-force", 3, true, "force 1.337"},
         {"impulse-and-force", 4, true, "as opened"},
         {"impulse-and-force", 5, false, "voltage"},
-        {"two-predictors", 1, true, "energy          1.47"},
-        {"two-predictors", 2, false, "energy          1.47"},
-        {"two-predictors", 3, true, "what came       1.34 N"},
-        {"two-predictors", 3, true, "linearised      1.34 N"},
+        {"two-predictors", 1, true, "energy 1.48 N"},
+        {"two-predictors", 2, false, "energy 1.48 N"},
+        {"two-predictors", 3, true, "came 1.34 N"},
+        {"two-predictors", 3, true, "linearised 1.34 N"},
         {"two-predictors", 5, false, "k2"},
         {"step-size", 1, true, "force"},
         {"step-size", 2, false, "step"},
-        {"step-size", 2, true, "runs, peaks"},
+        {"step-size", 2, true, "as opened"},
         {"beta-and-gamma", 1, false, "force 0"},
         {"beta-and-gamma", 1, false, "resid"},
-        {"beta-and-gamma", 1, true, "runs, peaks"},
+        {"beta-and-gamma", 1, true, "as opened"},
         {"beta-and-gamma", 3, false, "beta"},
         {"beta-and-gamma", 3, true, "ledger"},
         {"hybrid-law", 1, true, "approach impact [force]"},

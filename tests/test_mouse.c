@@ -95,16 +95,16 @@ TEST(test_an_axis_of_values_is_dragged_and_zoomed)
                 0.8 * (high - low), 1e-9);
 }
 
-TEST(test_events_and_scenarios_are_clicked)
+TEST(test_runs_and_scenarios_are_clicked)
 {
+    // a pinned run is hidden by a click on its results, and shown by another
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, "<End>");
-    hit_area log = part_on_screen(&ex, PANEL_LOG, PART_LINES);
-    const event *third = &ex.model.session.run.trace.events[log.index + 2];
-    click(&ex, log.area.x + 2, log.area.y + 2);
-    check_close(ex.model.session.now, third->time, 0);
-    // below the last one there is nothing
-    click(&ex, log.area.x + 2, log.area.y + log.area.height - 1);
+    press(&ex, "b:set motor.voltage 2<Enter>");
+    const hit_area run = part_on_screen(&ex, PANEL_RESULTS, PART_LINES);
+    click(&ex, run.area.x + 20, run.area.y);
+    assert_true(ex.model.pinned.runs[0].hidden);
+    click(&ex, run.area.x + 20, run.area.y);
+    assert_false(ex.model.pinned.runs[0].hidden);
     press(&ex, "o<Home>");
     hit_area list = part_on_screen(&ex, PANEL_SCENARIOS, PART_LINES);
     const char *name = ex.view.scenarios.names[list.index + 1];

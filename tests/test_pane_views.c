@@ -149,13 +149,18 @@ TEST(test_a_calm_axis_leaves_a_spike_out)
 {
     value_range wide, calm;
     OPEN_EXPLORER(ex, "compare/hybrid");
-    press_draws(&ex, "<End>");
-    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &wide));
-    press(&ex, ":axis calm 1<Enter>");
-    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &calm));
+    press_draws(&ex, ":trace force_reading<Enter><End>");
+    assert_true(view_pane_axis(&ex.model, &ex.view, PANES_OF_TABLE, &wide));
+    press(&ex, ":axis calm 10<Enter>");
+    assert_true(view_pane_axis(&ex.model, &ex.view, PANES_OF_TABLE, &calm));
 
     // the reading's spike of 6 N is a few samples long, the force stays below 2 N
     assert_true(wide.high > 4);
     assert_true(calm.high < 2.5 && calm.high > 1.2);
     assert_shows(&ex, "calm");
+
+    // beside the force it sets no range: that is the force's and what is to be held
+    value_range force;
+    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &force));
+    check_close(force.high, ex.model.session.run.summary.peak_force_N, 1e-9);
 }

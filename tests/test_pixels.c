@@ -297,7 +297,7 @@ TEST(test_arm_and_force_are_in_the_picture)
     pictures_finish(&layer);
     press(&ex, ":seek 0.35<Enter>");
     draw_pictures(&ex, &s, &layer);
-    assert_true(pixels_like(layer.items[1].surface, force) > 100);
+    assert_true(pixels_like(layer.items[1].surface, force) > 50);
     assert_true(pixels_like(layer.items[0].surface, force) > 100);
 }
 

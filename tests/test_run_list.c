@@ -61,7 +61,10 @@ TEST(test_no_more_than_seven_and_none_is_lost)
         press(&ex, "B");
     }
     assert_int_equal(ex.model.pinned.count, 0);
-    assert_false(ex.model.session.has_other);
+
+    // then the run as opened is the reference again
+    assert_true(ex.model.session.has_other);
+    assert_string_equal(model_reference_name(&ex.model), "as opened");
 }
 
 TEST(test_taking_a_run_brings_all_of_it_back)

@@ -91,7 +91,7 @@ start() {
         LIMIT=$patience until_true test -s "$folder/pid" && break
         patience=$((2 * patience))
     done
-    await "${SHOWS:-Space run/pause}"
+    await "${SHOWS:-why (W)}"
 }
 
 # suspends the lab; on a busy machine the shell may not have handed the terminal over when the key
@@ -139,7 +139,7 @@ mux new-session -d -x 120 -y 40 "bash --noprofile --rcfile $folder/profile -i"
 await "ready>"
 
 start
-await "impact 0.0443 N s"
+await "44.3 mN s"
 mux send-keys q
 await "status 0"
 check_given_back q
@@ -434,7 +434,6 @@ for size in 80x24 100x30 200x60; do
     ask ":trace force - voltage" "force-voltage"
     ask ":axis calm 10" "but for spikes"
     ask ":band force 0.1" "leaves the band"
-    ask ":colourby run" "a colour for each run"
     ask ":data $folder/rows.csv" "shifted by"
     ask ":residual force" "trace 11 hides it"
     ask ":identify k2" "command"

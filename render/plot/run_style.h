@@ -19,13 +19,13 @@ typedef struct run_style {
 // them apart.
 static inline run_style run_style_of(int rank)
 {
-    static const run_style looks[RUN_STYLES] = {
+    static const run_style styles[RUN_STYLES] = {
         {SLOT_BLUE, LINE_SOLID, 0},     {SLOT_VERMILLION, LINE_DASHED, 2},
         {SLOT_GREEN, LINE_DASH_DOT, 0}, {SLOT_PURPLE, LINE_DOTTED, 0},
         {SLOT_ORANGE, LINE_SOLID, 2},   {SLOT_SKY_BLUE, LINE_DASHED, 0},
         {SLOT_BLACK, LINE_DASH_DOT, 2}, {SLOT_GREY, LINE_DOTTED, 2},
     };
-    return looks[(rank - 1) % RUN_STYLES];
+    return styles[(rank - 1) % RUN_STYLES];
 }
 
 // Its colour in a theme; in the mono one its grey.

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 typedef struct account {
     const scenario *scenario;
@@ -48,15 +49,22 @@ static void write_drive(const scenario *s, char *text, size_t size)
     snprintf(text, size, "the law '%s'", law);
 }
 
+// How near the arm comes to the wall [m]; infinite without a wall.
+static double nearest_gap(const trace *t)
+{
+    double nearest = (double)INFINITY;
+    for (size_t r = 0; r < t->row_count; r++) {
+        nearest = fmin(nearest, t->rows[r].gap);
+    }
+    return nearest;
+}
+
 // Adds a sentence on a run without a touch: how near the arm comes to the wall.
 static void say_no_touch(account *a, const char *drive)
 {
     const trace *t = &a->run->trace;
     const double end = t->rows[t->row_count - 1].time;
-    double nearest = (double)INFINITY;
-    for (size_t r = 0; r < t->row_count; r++) {
-        nearest = fmin(nearest, t->rows[r].gap);
-    }
+    const double nearest = nearest_gap(t);
 
     if (isfinite(nearest)) {
         add_sentence(a,
@@ -100,20 +108,26 @@ static bool say_approach(account *a)
     return true;
 }
 
+// The first impact; NULL without one.
+static const event *first_impact(const trace *t)
+{
+    for (size_t i = 0; i < t->event_count; i++) {
+        if (t->events[i].kind == EVENT_IMPACT) {
+            return &t->events[i];
+        }
+    }
+    return NULL;
+}
+
 // Adds a sentence on the first impact, if there is one: its impulse, and the kinetic
 // energy before and after it.
 static void say_blow(account *a)
 {
     const trace *t = &a->run->trace;
-    size_t i = 0;
-    while (i < t->event_count && t->events[i].kind != EVENT_IMPACT) {
-        i++;
-    }
-
-    if (i == t->event_count) {
+    const event *impact = first_impact(t);
+    if (impact == NULL) {
         return;
     }
-    const event *impact = &t->events[i];
 
     // what was there before it, and after it
     add_sentence(a,
@@ -317,4 +331,47 @@ int run_account(const scenario *s, const run_result *run,
     }
     say_end(&a);
     return a.count;
+}
+
+// Writes how fast the arm comes to the wall, as far as the model tells it.
+static void write_hit(const trace *t, double touch, char *line)
+{
+    const sample *before = row_entering(t, touch);
+    if (before->contact != 0) {
+        snprintf(line, ACCOUNT_SENTENCE, "starts on the wall");
+    } else if (isnan(before->gap_velocity)) {
+        snprintf(line, ACCOUNT_SENTENCE, "touches the wall at %.4g s", touch);
+    } else {
+        snprintf(line, ACCOUNT_SENTENCE, "hits at %.3g m/s", fabs(before->gap_velocity));
+    }
+}
+
+void run_account_line(const run_result *run, char line[ACCOUNT_SENTENCE])
+{
+    const trace *t = &run->trace;
+    const double touch = run->summary.first_contact_s;
+    if (isnan(touch)) {
+        const double nearest = nearest_gap(t);
+        snprintf(line, ACCOUNT_SENTENCE, "no touch");
+        if (isfinite(nearest)) {
+            snprintf(line, ACCOUNT_SENTENCE, "no touch: %.3g mm are left at its nearest",
+                     1e3 * nearest);
+        }
+        return;
+    }
+    write_hit(t, touch, line);
+
+    // what the impact takes of the motion
+    const event *impact = first_impact(t);
+    if (impact == NULL) {
+        return;
+    }
+    const double before = row_entering(t, impact->time)->kinetic_energy;
+    const double after = t->rows[trace_row_at(t, impact->time)].kinetic_energy;
+    if (before > 0 && isfinite(after)) {
+        const size_t used = strlen(line);
+        snprintf(line + used, ACCOUNT_SENTENCE - used,
+                 ", %.0f %% of the motion is lost at once, the rest bends the arm",
+                 100 * (before - after) / before);
+    }
 }

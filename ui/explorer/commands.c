@@ -222,7 +222,7 @@ static bool carry_out_look(explorer_model *model, explorer_view *view,
 {
     if (begins_with_one(line,
                         " panes axis zoom mark trace phase spectrum signal lanes limit "
-                        "residual band note colourby ")) {
+                        "residual band note ")) {
         return explorer_execute(model, view, input, line);
     }
     return act_refuse(input, "'%.60s' does not belong into a session", line);
@@ -277,7 +277,7 @@ bool act_session(explorer_model *model, explorer_view *view, explorer_input *inp
 
 // The commands that :remember writes, with blanks round each.
 static const char remembered[] =
-    " theme glyphs colours pixels closeup mouse bending colourby rate lanes slow speed "
+    " theme glyphs colours pixels closeup mouse bending rate lanes slow speed "
     "panes axis key unkey ";
 
 // Executes a line of the file, where only what :remember writes is taken.

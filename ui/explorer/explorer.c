@@ -30,6 +30,7 @@ void explorer_finish(explorer *ex)
 bool explorer_carry_out(explorer *ex, const char *line)
 {
     const bool done = explorer_execute(&ex->model, &ex->view, &ex->input, line);
+    act_apply_baseline(&ex->model, &ex->input);
     act_follow_lesson(&ex->model);
     return done;
 }
@@ -43,7 +44,8 @@ void explorer_welcome(explorer *ex)
     }
     FILE *stream = fopen(path, "w");
     if (stream != NULL && fclose(stream) == 0) {
-        ex->view.page = PANEL_WELCOME;
+        act_tell(&ex->input, "Space pauses, Enter changes the voltage, o opens others, "
+                             "? lists all keys");
     }
 }
 

@@ -140,7 +140,7 @@ void recovery_end(explorer *ex, bool orderly);
 
 // --- settings --------------------------------------------------------------------------
 
-// Shows the page of a first visit, unless there was one: then a file in the folder of
+// Says what to press on a first visit, unless there was one: then a file in the folder of
 // settings says so. Without such a folder nothing is shown.
 void explorer_welcome(explorer *ex);
 

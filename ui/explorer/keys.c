@@ -238,10 +238,6 @@ void explorer_key(explorer *ex, int key)
         key = KEY_CODE_BACKSPACE;
     }
 
-    // the page of a first visit takes no key
-    if (ex->view.page == PANEL_WELCOME) {
-        ex->view.page = PANEL_NONE;
-    }
     if (recovery_answer(ex, key)) {
         return;
     }

@@ -116,9 +116,6 @@ static void add_looks(const explorer_model *model, const explorer_view *view,
 
     // colours, bounds, the mark
     const solved_limit *band = &model->band, *limit = &model->limit;
-    if (view->looks.by_run) {
-        add_line(file, "colourby run");
-    }
     if (band->signal >= 0) {
         add_line(file, "band %s %.17g", signal_table[band->signal].name, band->bound);
     }

@@ -317,7 +317,7 @@ static uint32_t ascii_glyph(uint32_t glyph)
 {
     // each behind the ASCII character that stands for it
     static const wchar_t twins[] =
-        L"-─|│+┌+┐+└+┘>▶<◀^▲v▼o●*◆%▒.░#▓@█dΔ=‖x×~‥~…>▸:┆+┤+┬=╌.┈~╴v▾.○^↑S∫v↓";
+        L"-─=━.·|│+┌+┐+└+┘>▶<◀^▲v▼o●*◆%▒.░#▓@█dΔ=‖x×~‥~…>▸:┆+┤+┬=╌.┈~╴v▾.○^↑S∫v↓";
     for (int i = 0; twins[i] != 0; i += 2) {
         if ((uint32_t)twins[i + 1] == glyph) {
             return (uint32_t)twins[i];

@@ -70,14 +70,16 @@ typedef struct screen {
 
 // The glyphs of lines and signs on it.
 enum {
-    GLYPH_LINE = 0x2500,      // ─
-    GLYPH_UPRIGHT = 0x2502,   // │
-    GLYPH_TICK_LEFT = 0x2524, // ┤
-    GLYPH_TICK_DOWN = 0x252c, // ┬
-    GLYPH_DASHES = 0x254c,    // ╌
-    GLYPH_DOTS = 0x2508,      // ┈
-    GLYPH_HALF_LINE = 0x2574, // ╴
-    GLYPH_CURSOR = 0x2506,    // ┆
+    GLYPH_LINE = 0x2500,       // ─
+    GLYPH_THICK_LINE = 0x2501, // ━
+    GLYPH_UPRIGHT = 0x2502,    // │
+    GLYPH_TICK_LEFT = 0x2524,  // ┤
+    GLYPH_TICK_DOWN = 0x252c,  // ┬
+    GLYPH_DASHES = 0x254c,     // ╌
+    GLYPH_DOTS = 0x2508,       // ┈
+    GLYPH_HALF_LINE = 0x2574,  // ╴
+    GLYPH_MEASURED = 0x00b7,   // ·
+    GLYPH_CURSOR = 0x2506,     // ┆
     GLYPH_LIGHT_SHADE = 0x2591,
     GLYPH_SHADE = 0x2592,
     GLYPH_DARK_SHADE = 0x2593,
@@ -86,6 +88,7 @@ enum {
     GLYPH_CIRCLE = 0x25cb,     // ○
     GLYPH_TRIANGLE = 0x25b2,   // ▲
     GLYPH_ARROW_DOWN = 0x25bc, // ▼
+    GLYPH_ARROW_UP = 0x2191,   // ↑
     GLYPH_DIAMOND = 0x25c6,    // ◆
     GLYPH_POINTER = 0x25b8     // ▸
 };

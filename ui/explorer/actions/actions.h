@@ -119,7 +119,6 @@ bool act_palette(explorer_view *view, explorer_input *input, const char *argumen
 bool act_glyphs(explorer_view *view, explorer_input *input, const char *argument);
 bool act_theme(explorer_view *view, explorer_input *input, const char *argument);
 bool act_colours(explorer_view *view, explorer_input *input, const char *argument);
-bool act_colourby(explorer_view *view, explorer_input *input, const char *argument);
 bool act_pixels(explorer_view *view, explorer_input *input, const char *argument);
 bool act_rate(explorer_view *view, explorer_input *input, const char *argument);
 bool act_closeup(explorer_view *view, explorer_input *input, const char *argument);
@@ -218,7 +217,8 @@ const char *act_full_path(const char *word, char *text, size_t size);
 // follow.
 status act_pin_value(explorer_model *model, const sweep_axis *axis, double value,
                      const char *name, fault *f);
-// Compares the present run with the baseline of the pinned ones from now on.
+// Compares the present run with the baseline of the pinned ones, else with the run as
+// opened, from now on.
 bool act_apply_baseline(explorer_model *model, explorer_input *input);
 
 // --- time ------------------------------------------------------------------------------

@@ -294,7 +294,7 @@ static bool read_bound(explorer_input *input, const char *argument, const char *
                        solved_limit *bound)
 {
     char text[LINE_TEXT], *words[4];
-    solved_limit read = {.signal = -1};
+    solved_limit read = {.signal = -1, .quantity = -1};
     if (strcmp(argument, "off") == 0) {
         *bound = read;
         return true;
@@ -326,7 +326,7 @@ static bool tell_band(const explorer_model *model, explorer_input *input)
     if (!s->has_other) {
         return act_tell(input, "b pins the run that it is round");
     }
-    const char *round = model->pinned.runs[model->pinned.baseline].name;
+    const char *round = model_reference_name(model);
     if (signal_is_derived(band->signal) || signal_is_state(band->signal)) {
         return act_tell(input, "the band is round '%s'", round);
     }

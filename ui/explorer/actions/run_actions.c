@@ -12,17 +12,9 @@
 
 // --- pinned runs -----------------------------------------------------------------------
 
-// Makes the baseline the run for comparison with the present one.
 bool act_apply_baseline(explorer_model *model, explorer_input *input)
 {
-    const run_list *list = &model->pinned;
-    if (list->baseline < 0) {
-        session_forget_other(&model->session);
-        return true;
-    }
-    return act_succeeded(input, session_keep_beside(&model->session,
-                                                    &list->runs[list->baseline].run,
-                                                    &input->fault));
+    return act_succeeded(input, model_follow_reference(model, &input->fault));
 }
 
 // Pins the present run and makes it the baseline.
@@ -188,7 +180,7 @@ bool act_unpin(explorer_model *model, explorer_input *input, const char *argumen
 static bool tell_difference(const explorer_model *model, const explorer_view *view,
                             explorer_input *input)
 {
-    const char *name = model->pinned.runs[model->pinned.baseline].name;
+    const char *name = model_reference_name(model);
     const int focused = panes_focused(&view->panes);
     if (focused < 0) {
         return act_tell(input, "minus '%s'; D shows the runs again", name);
@@ -386,8 +378,8 @@ static status solve_and_pin(explorer_model *model, const char *parameter,
     }
 
     // the condition is drawn in the panes of its signal
-    model->limit =
-        (solved_limit){signal_of_quantity(condition->quantity), condition->bound};
+    model->limit = (solved_limit){signal_of_quantity(condition->quantity),
+                                  condition->bound, condition->quantity};
 
     // the run at the limit
     const double value = found->limits[nearest_limit(model, axis, found)].value;

@@ -421,11 +421,6 @@ bool act_lanes(explorer_view *view, explorer_input *input, const char *argument)
     return choose(view, input, "lanes", argument);
 }
 
-bool act_colourby(explorer_view *view, explorer_input *input, const char *argument)
-{
-    return choose(view, input, "colourby", argument);
-}
-
 bool act_rate(explorer_view *view, explorer_input *input, const char *argument)
 {
     double rate = 0;

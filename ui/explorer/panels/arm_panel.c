@@ -240,8 +240,8 @@ static void draw_wall(const stage *g, const parameters *p, const sample *at)
     // reach
     const int column = c->x + (int)(plan_x(&g->view, x + shift.x) / 2);
     const int row = c->y + (int)(plan_y(&g->view, y + shift.y) / 4);
-    if (row > c->y && row < c->y + c->height) {
-        for (int i = 0; i < 3; i++) {
+    if (row >= c->y && row < c->y + c->height) {
+        for (int i = 0; i < 3 && row > c->y; i++) {
             screen_put(c->screen, column + i, row - 1, GLYPH_SHADE, INK_WALL);
         }
         screen_put(c->screen, column + 1, row, GLYPH_DIAMOND, INK_WALL);
@@ -278,7 +278,8 @@ static void draw_dots(const explorer_model *model, const explorer_view *view,
     const plane_vector tip = tip_of(model);
     draw_wall(g, &e->effective.parameters, row);
     if (other_run(e) != NULL) {
-        draw_arm_links(model, view, g, other_run(e), INK_OTHER, true);
+        draw_arm_links(model, view, g, other_run(e), run_ink(model_reference_rank(model)),
+                       true);
     }
     draw_hub_circle(g, row->hub_angle);
     draw_arm_links(model, view, g, &e->run.trace, INK_ARM, false);
@@ -316,7 +317,9 @@ static void draw_pixels(const explorer_model *model, const explorer_view *view,
                                 .hub = picture_colour(s, theme, INK_HUB),
                                 .wall = picture_colour(s, theme, INK_WALL),
                                 .force = picture_colour(s, theme, INK_FORCE),
-                                .other = picture_colour(s, theme, INK_OTHER),
+                                .other =
+                                    picture_colour(s, theme,
+                                                   run_ink(model_reference_rank(model))),
                                 .frame = picture_colour(s, theme, INK_FRAME)}};
     plan_paint(g->picture, &p, &g->view);
 }

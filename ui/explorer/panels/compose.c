@@ -429,32 +429,6 @@ static int fold_panel(layout *lay, int rows[PANEL_IDS], panel_id id)
     return freed;
 }
 
-// Folds panels of the stack until the chosen one has enough of the rows, of which it has
-// `left`: first those without anything to show. Returns the rows that it has then.
-static int fold_stack(const explorer_model *model, layout *lay, int rows[PANEL_IDS],
-                      int left)
-{
-    // six lines in a frame are enough, or one where all have few rows
-    enum { SHORT = 14, ENOUGH = 8, LITTLE = 3 };
-    int rows_of_all = left;
-    for (int id = 0; id < PANEL_IDS; id++) {
-        rows_of_all += rows[id];
-    }
-    const int enough = rows_of_all < SHORT ? LITTLE : ENOUGH;
-
-    // an empty log goes first
-    const bool log_is_empty = model->log.count == 0 || model->session.seen <= 0;
-    if (log_is_empty && left < enough) {
-        left += fold_panel(lay, rows, PANEL_LOG);
-    }
-    static const panel_id order[] = {PANEL_PREDICTORS, PANEL_CONTROLLER, PANEL_LOG,
-                                     PANEL_RUNS};
-    for (size_t i = 0; i < sizeof order / sizeof order[0] && left < enough; i++) {
-        left += fold_panel(lay, rows, order[i]);
-    }
-    return left;
-}
-
 // What is folded, in the lower edge of the chosen panel.
 static void draw_tabs(const layout *lay, screen *s, area a)
 {
@@ -473,11 +447,12 @@ static void draw_tabs(const layout *lay, screen *s, area a)
     }
 }
 
-// The rows of the panels below the chosen one; returns their sum. Of a sweep and of
-// statistics there is more to show than all have rows, so others are folded.
+// The rows of the panels below the chosen one, which has at least a few; returns their
+// sum. Of a sweep and of statistics there is more to show, so the others are folded.
 static int rows_of_stack(const explorer_model *model, const explorer_view *view,
                          layout *lay, screen_size body, int rows[PANEL_IDS])
 {
+    enum { LEAST = 4 };
     const panel_id chosen = view->side.panel;
     const bool chosen_has_much = chosen == PANEL_SWEEP || chosen == PANEL_STATISTICS;
     int sum = 0;
@@ -487,7 +462,7 @@ static int rows_of_stack(const explorer_model *model, const explorer_view *view,
             continue;
         }
         rows[id] = panel_of(id)->rows(model, view, body);
-        if (chosen_has_much && (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS)) {
+        if (chosen_has_much || body.height - sum - rows[id] < LEAST) {
             fold_panel(lay, rows, id);
         }
         sum += rows[id];
@@ -504,7 +479,7 @@ static void draw_stack(const explorer_model *model, const explorer_view *view,
     const int left = a.height - rows_of_stack(model, view, lay, body, rows);
 
     // the chosen one has what the others leave
-    area at = {a.x, a.y, a.width, fold_stack(model, lay, rows, left)};
+    area at = {a.x, a.y, a.width, left};
     panel_draw(view->side.panel, model, view, lay, s, at);
     draw_tabs(lay, s, at);
     for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
@@ -516,31 +491,66 @@ static void draw_stack(const explorer_model *model, const explorer_view *view,
     }
 }
 
-// Draws the lesson, if there is one, into the first rows of an area; returns what it
-// leaves.
-static area draw_lesson_strip(const explorer_model *model, const explorer_view *view,
-                              layout *lay, screen *s, area a)
+// Draws what goes across the screen into the first rows of an area, results and a lesson
+// if there is one, and into its last one; returns what they leave.
+static area draw_strips(const explorer_model *model, const explorer_view *view,
+                        layout *lay, screen *s, area a)
 {
     const screen_size room = {s->width, a.height};
-    const int rows = panel_of(PANEL_LESSON)->rows(model, view, room);
-    if (rows > 0) {
-        panel_draw(PANEL_LESSON, model, view, lay, s, (area){0, a.y, s->width, rows});
+    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
+        if (panel_place_of(id) != PLACE_STRIP) {
+            continue;
+        }
+        const int rows = panel_of(id)->rows(model, view, room);
+        if (rows > 0) {
+            panel_draw(id, model, view, lay, s, (area){0, a.y, s->width, rows});
+        }
+        a = area_below(a, rows);
     }
-    return area_below(a, rows);
+    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
+        if (panel_place_of(id) != PLACE_FOOT) {
+            continue;
+        }
+        const screen_size left = {s->width, a.height};
+        const int rows = panel_of(id)->rows(model, view, left);
+        a.height -= rows;
+        if (rows > 0) {
+            panel_draw(id, model, view, lay, s, area_below(a, a.height));
+        }
+    }
+    return a;
+}
+
+// The rows of the arm where there are so many for it and the curves: a third of them, but
+// neither so few that it is no arm nor so many that curves could use them; two panes and
+// their axis go first.
+static int rows_of_arm(int height)
+{
+    enum { FEW = 4, USUAL = 6, MANY = 12, CURVES = 8 };
+    int rows = height / 3;
+    if (rows < USUAL) {
+        rows = USUAL;
+    }
+    if (rows > MANY) {
+        rows = MANY;
+    }
+    if (rows > height - CURVES) {
+        rows = height - CURVES;
+    }
+    if (rows < FEW) {
+        return height < 2 * FEW ? height / 2 : FEW;
+    }
+    return rows;
 }
 
 // The arm with the curves below it on the left, the stack on the right.
 static void draw_panels(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area body)
 {
-    body = draw_lesson_strip(model, view, lay, s, body);
+    body = draw_strips(model, view, lay, s, body);
     const int side = side_width(s->width), width = s->width - side;
 
-    // the arm has two fifths of a tall screen, or as many rows as it makes use of
-    int arm_height = body.height / 2;
-    if (body.height >= 20) {
-        arm_height = body.height * 2 / 5;
-    }
+    int arm_height = rows_of_arm(body.height);
     const int useful = arm_rows(model, lay, (screen_size){width, arm_height});
     if (arm_height > useful) {
         arm_height = useful;

@@ -153,18 +153,18 @@ static void draw_readings(screen *s, area a, const sample *row, const parameters
     }
 }
 
-// Tall enough for its table, or brief, or not at all; before the predictors, which may
-// fold.
+// Tall enough for its table, or brief, or not at all.
 static int controller_rows(const explorer_model *model, const explorer_view *view,
                            screen_size body)
 {
     if (!model_has_law(model)) {
         return 0;
     }
-    if (body.height - predictors_rows(model, view, body) >= 30) {
+    (void)view;
+    if (body.height >= 24) {
         return TALL;
     }
-    if (body.height >= 13) {
+    if (body.height >= 11) {
         return BRIEF;
     }
     return 0;

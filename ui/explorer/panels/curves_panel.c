@@ -216,7 +216,10 @@ static void draw_legend(const explorer_model *model, const explorer_view *view,
         char text[128];
         write_legend(model, p, p->signals[k], how, text, sizeof text);
         const int length = 2 + (int)strlen(text);
-        const ink shade = is_hidden(p, k) ? INK_FRAME : look.colour[k];
+        ink shade = model_shows_others(model) ? run_ink(1) : look.colour[k];
+        if (is_hidden(p, k)) {
+            shade = INK_FRAME;
+        }
         const uint32_t line = a.width > 0 ? lines[look.style[k]] : ' ';
         screen_put(s, a.x, a.y, line, shade);
         area_text(s, area_right(a, 2), shade, text);
@@ -299,44 +302,22 @@ static void draw_pane_title(const explorer_model *model, const explorer_view *vi
 
 // --- the panes -------------------------------------------------------------------------
 
-// How a run's curves differ from those of others: the present one has the signals'
-// colours and lines, a single pinned one their lines in one colour, several have their
-// own lines.
-static void set_look(const explorer_model *model, const explorer_view *view,
-                     plot_frame *f, const pane *p, const shown_run *run,
-                     const pane_look *look, int k)
+// How a run's curves differ from those of others: beside others it has one colour, and
+// the lines of its curves tell the signals.
+static void set_look(const explorer_model *model, plot_frame *f, const pane *p,
+                     const shown_run *run, const pane_look *look, int k)
 {
-    const bool by_run = view->looks.by_run != 0;
+    const int rank = shown_run_rank(run);
     f->pattern = style_pattern(look->style[k]);
     f->colour = look->colour[k];
-    switch (run->kind) {
-    case SHOWN_PRESENT:
-        if (by_run) {
-            f->colour = run_ink(-1);
-        }
-        break;
-    case SHOWN_PINNED:
-        if (by_run) {
-            f->colour = run_ink(run->index);
-        } else if (model_visible_pins(model) == 1) {
-            f->colour = INK_OTHER;
-        } else {
-            f->pattern = run_pattern(run->index);
-        }
-        break;
-    case SHOWN_SWEPT:
-        f->colour = run->index == model->sweep.selected ? INK_OTHER : INK_FRAME;
-        break;
-    case SHOWN_BEFORE:
+    if (rank > 0 && model_shows_others(model)) {
+        f->colour = run_ink(rank);
+    } else if (run->kind == SHOWN_SWEPT && run->index == model->sweep.selected) {
+        f->colour = INK_OTHER;
+    } else if (run->kind == SHOWN_SWEPT || run->kind == SHOWN_BEFORE) {
         f->colour = INK_FRAME;
-        break;
-    case SHOWN_MEASURED:
-        if (p->view != VIEW_RESIDUAL) {
-            f->colour = INK_TEXT;
-        }
-        break;
-    case SHOWN_DIFFERENCE:
-        break;
+    } else if (run->kind == SHOWN_MEASURED && p->view != VIEW_RESIDUAL) {
+        f->colour = INK_TEXT;
     }
 }
 
@@ -379,18 +360,15 @@ static void draw_run_curves(const explorer_model *model, const explorer_view *vi
         return;
     }
 
-    // of many runs a pane shows what it is about
-    const bool one_of_many = run->kind == SHOWN_SWEPT ||
-                             (run->kind == SHOWN_PINNED &&
-                              model_visible_pins(model) > 1 && !view->looks.by_run);
-    const int count = one_of_many ? 1 : p->count;
-    for (int k = 0; k < count && k < p->count; k++) {
+    // of a sweep's runs a pane shows what it is about
+    const int count = run->kind == SHOWN_SWEPT ? 1 : p->count;
+    for (int k = 0; k < count; k++) {
         if (is_hidden(p, k)) {
             continue;
         }
         const int signal = p->signals[k];
         const double *pairs = extremes_pairs(&model->extremes[number], run, signal);
-        set_look(model, view, &f, p, run, &look, k);
+        set_look(model, &f, p, run, &look, k);
         draw_curve(model, f, run->trace, signal, pairs, is_present);
     }
 }
@@ -402,8 +380,7 @@ static void draw_levels(const explorer_model *model, const plot_frame *f, screen
     const struct {
         int signal, parameter;
         bool both_ways;
-    } levels[] = {{SIGNAL_INDEX(force), PARAMETER_INDEX(control.force), false},
-                  {SIGNAL_INDEX(force), PARAMETER_INDEX(control.force_limit), false},
+    } levels[] = {{SIGNAL_INDEX(force), PARAMETER_INDEX(control.force_limit), false},
                   {SIGNAL_INDEX(command), PARAMETER_INDEX(motor.voltage_limit), true},
                   {SIGNAL_INDEX(hub_angle), PARAMETER_INDEX(wall.angle), false},
                   {SIGNAL_INDEX(hub_velocity), PARAMETER_INDEX(control.speed_limit),
@@ -414,6 +391,14 @@ static void draw_levels(const explorer_model *model, const plot_frame *f, screen
         if (p->signals[k] == model->limit.signal) {
             plot_frame_level(f, s, model->limit.bound, "limit");
         }
+    }
+
+    // what the law is to hold, and the band in which it has settled
+    if (p->signals[0] == SIGNAL_INDEX(force)) {
+        const value_range band = view_force_band(model);
+        plot_frame_level(f, s, (band.low + band.high) / 2, "command");
+        plot_frame_level(f, s, band.low, "-5 %");
+        plot_frame_level(f, s, band.high, "+5 %");
     }
 
     // those that belong to the first signal of the pane and have a value in the run
@@ -480,6 +465,34 @@ static void draw_bounds(const explorer_model *model, const plot_frame *f, screen
     }
 }
 
+// Impulses of the present run over its force, an arrow with its number each: they are no
+// force, and have no place on its axis. One that is a thousandth of the largest has none.
+static void draw_impulses(const explorer_model *model, const plot_frame *f, screen *s)
+{
+    const session *e = &model->session;
+    const trace *t = &e->run.trace;
+    double largest = 0;
+    for (size_t i = 0; i < t->event_count; i++) {
+        if (t->events[i].kind == EVENT_IMPACT) {
+            largest = fmax(largest, t->events[i].impulse);
+        }
+    }
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
+        const event *v = &t->events[i];
+        char text[32];
+        if (v->kind != EVENT_IMPACT || v->impulse < 1e-3 * largest) {
+            continue;
+        }
+
+        // the largest with its unit where that has room
+        snprintf(text, sizeof text, "%.3g mN s", 1e3 * v->impulse);
+        if (v->impulse < largest || !plot_frame_arrow(f, s, v->time, text)) {
+            text[strcspn(text, " ")] = '\0';
+            plot_frame_arrow(f, s, v->time, text);
+        }
+    }
+}
+
 // Why a pane shows no curve.
 static const char *reason_of_emptiness(const explorer_model *model, const pane *p)
 {
@@ -504,6 +517,10 @@ static void draw_pane_curves(const explorer_model *model, const explorer_view *v
     plot_frame_open(view, f);
     for (int i = model_runs(model, p, runs) - 1; i >= 0; i--) {
         draw_run_curves(model, view, *f, p, &runs[i], i);
+    }
+    if (p->signals[0] == SIGNAL_INDEX(force) && p->view == VIEW_TIME &&
+        !model_subtracts(model)) {
+        draw_impulses(model, f, s);
     }
     draw_bounds(model, f, s, p);
     if (view->mark.set) {
@@ -567,27 +584,42 @@ static int count_shown_panes(const pane_set *panes)
     return count;
 }
 
-// Draws as many panes as have room, `most`, one below the other; those from the focused
-// one on where that is not all, so that each can be reached.
+// The panes that are drawn, `most` of those shown: where that is not all, that of force
+// and those from the focused one on, so that each can be reached. Returns how many.
+static int choose_panes(const pane_set *set, int most, int chosen[PANES])
+{
+    const int shown = count_shown_panes(set);
+    const bool keeps_force = most > 1 && set->pane[0].shown;
+    const int first = shown > most ? panes_focused(set) : 0;
+    int count = 0;
+    if (keeps_force) {
+        chosen[count++] = 0;
+    }
+    for (int i = 0; i < PANES && count < most; i++) {
+        const int index = (first + i) % PANES;
+        const bool taken = keeps_force && index == 0;
+        if (set->pane[index].shown && !taken) {
+            chosen[count++] = index;
+        }
+    }
+    return count;
+}
+
+// Draws panes one below the other, as many as have room. That of force has half of the
+// rows, the others share what is left, rounded up.
 static void draw_panes(const explorer_model *model, const explorer_view *view,
                        layout *lay, screen *s, area a, int most)
 {
-    const int shown = count_shown_panes(&view->panes);
-    int first = 0, left = shown;
-    if (shown > most) {
-        first = panes_focused(&view->panes);
-        left = most;
-    }
-
-    // each has its share of the rows that are left, rounded up
-    for (int i = 0; i < PANES && left > 0; i++) {
-        const int index = (first + i) % PANES;
-        if (view->panes.pane[index].shown) {
-            const int height = (a.height + left - 1) / left;
-            draw_pane(model, view, lay, s, index, (area){a.x, a.y, a.width, height});
-            a = area_below(a, height);
-            left--;
+    int chosen[PANES];
+    const int count = choose_panes(&view->panes, most, chosen);
+    for (int i = 0; i < count; i++) {
+        const int left = count - i;
+        int height = (a.height + left - 1) / left;
+        if (chosen[i] == 0 && count > 1) {
+            height = (a.height + 1) / 2;
         }
+        draw_pane(model, view, lay, s, chosen[i], (area){a.x, a.y, a.width, height});
+        a = area_below(a, height);
     }
 }
 
@@ -612,7 +644,11 @@ static void draw_curves(const explorer_model *model, const explorer_view *view,
     const area axis = {a.x, a.y + panes_height, a.width, TIME_AXIS};
     const area lanes = {a.x, axis.y + TIME_AXIS, a.width, lanes_height};
 
+    // of two and more that of force has half of the rows
     int most = panes_height / LEAST_PANE;
+    if (view->panes.pane[0].shown && most > 1) {
+        most = 1 + panes_height / 2 / LEAST_PANE;
+    }
     if (view->panes.alone) {
         most = 1;
     }

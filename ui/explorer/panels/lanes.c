@@ -382,7 +382,8 @@ static void draw_run_map(const explorer_model *model, const explorer_view *view,
 static void draw_lane_label(const explorer_model *model, screen *s, area a, lane l)
 {
     if (l.run > 0) {
-        screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "\u2592 %s",
+        const shown_run run = model_run(model, l.run);
+        screen_print(s, a.x, a.y, LABEL_WIDTH, run_ink(shown_run_rank(&run)), "\u2592 %s",
                      model_run_name(model, l.run));
     } else {
         screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, labels[l.kind]);

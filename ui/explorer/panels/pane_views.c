@@ -87,7 +87,8 @@ static bool draw_phase(const explorer_model *model, const explorer_view *view, s
 
     // the present run over the baseline
     if (e->has_other && !model->difference.on) {
-        draw_path(&p, &e->other.trace, of, from, to, INK_OTHER);
+        draw_path(&p, &e->other.trace, of, from, to,
+                  run_ink(model_reference_rank(model)));
     }
     draw_path(&p, t, of, from, fmin(to, e->seen), INK_SERIES_0);
 

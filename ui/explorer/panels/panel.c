@@ -36,20 +36,6 @@ unsigned style_pattern(line_style style)
     return patterns[style];
 }
 
-unsigned run_pattern(int index)
-{
-    static const unsigned patterns[] = {0x1f1f, 0x3333, 0x0fff, 0x1111,
-                                        0x33ff, 0x0333, 0x0101};
-    enum { PATTERNS = sizeof patterns / sizeof patterns[0] };
-    assert(index >= 0);
-    return patterns[index % PATTERNS];
-}
-
-ink run_ink(int index)
-{
-    return (ink)(INK_SERIES_0 + (index + 1) % 8);
-}
-
 bool line_has_dot(unsigned pattern, long across)
 {
     // a column to the left of the first is one of the pattern before

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "src/predict/predictors.h"
+#include "src/session/account.h"
 #include "ui/explorer/actions/actions.h"
 #include "ui/explorer/state/command_list.h"
 #include "ui/explorer/state/state.h"
@@ -14,12 +15,6 @@
 
 // Sixteen dots, repeated: bit i is dot i.
 unsigned style_pattern(line_style style);
-// The line of a pinned run, different for each.
-unsigned run_pattern(int index);
-
-// The colour of a pinned run by its index, or of the present one (-1), where runs have
-// colours.
-ink run_ink(int index);
 
 // Whether a line has a dot at a column of dots.
 bool line_has_dot(unsigned pattern, long across);
@@ -112,6 +107,14 @@ typedef struct linearised_answer {
     prediction_answer answer;
 } linearised_answer;
 
+// The account of a run in a line.
+typedef struct account_line {
+    unsigned long run; // 0: not written
+    size_t rows;       // of the run when it was
+    bool whole;        // of a complete run
+    char text[ACCOUNT_SENTENCE];
+} account_line;
+
 // What a run contains for the lanes below its curves.
 typedef struct lane_survey {
     unsigned long run; // 0: nothing is known
@@ -128,6 +131,7 @@ typedef struct layout {
     arm_extent extent;            // remembered
     linearised_answer linearised; // remembered
     lane_survey lanes;            // remembered
+    account_line account;         // remembered
 } layout;
 
 // Stores the position of a part. Parts beyond the capacity are not found by the mouse.
@@ -270,12 +274,6 @@ bool list_press_key(const page_list *list, explorer_model *model, explorer_view 
 // that sees the prompt, so it has no `draw`.
 void draw_palette(const explorer_view *view, const prompt *p, layout *lay, screen *s,
                   area a);
-
-// --- the predictors --------------------------------------------------------------------
-
-// The rows that their panel takes of a stack, which the controller's leaves to it.
-int predictors_rows(const explorer_model *model, const explorer_view *view,
-                    screen_size body);
 
 // --- the arm ---------------------------------------------------------------------------
 

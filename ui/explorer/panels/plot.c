@@ -215,6 +215,42 @@ void plot_frame_level(const plot_frame *f, screen *s, double value, const char *
     screen_text(s, c->x + c->width - length, y, length, INK_FRAME, name);
 }
 
+// Whether some cells are blank, or a picture's.
+static bool cells_are_free(const screen *s, int x, int y, int count)
+{
+    for (int i = 0; i < count; i++) {
+        const uint32_t glyph = s->cells[(long)y * s->width + x + i].glyph;
+        if (glyph != ' ' && glyph < GLYPH_PICTURE) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool plot_frame_arrow(const plot_frame *f, screen *s, double time, const char *text)
+{
+    const canvas *c = &f->canvas;
+    if (!(time >= f->from && time <= f->to)) {
+        return false;
+    }
+
+    // the arrow over the curve, its text behind it, else before it, on blank cells
+    const int length = text_cells(text);
+    const int x = c->x + (int)(plot_x(f, time) / 2), end = c->x + c->width;
+    for (int y = c->y; y < c->y + c->height; y++) {
+        const bool behind =
+            x + length + 1 < end && cells_are_free(s, x + 1, y, length + 1);
+        const bool before =
+            x - length - 1 >= c->x && cells_are_free(s, x - length - 1, y, length + 1);
+        if (behind || before) {
+            screen_put(s, x, y, GLYPH_ARROW_UP, INK_EVENT);
+            screen_text(s, behind ? x + 1 : x - length, y, length, INK_EVENT, text);
+            return true;
+        }
+    }
+    return false;
+}
+
 // --- axes ------------------------------------------------------------------------------
 
 // A tick's value with no more digits than the axis needs, its power of ten behind.

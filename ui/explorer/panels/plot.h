@@ -41,6 +41,10 @@ void plot_frame_cursor(const plot_frame *f, screen *s, double time);
 // A setpoint or limit across the pane, with its name, behind everything already drawn.
 void plot_frame_level(const plot_frame *f, screen *s, double value, const char *name);
 
+// An arrow upwards at an instant [s] with a short text beside it, in the uppermost row
+// that has room for the text. False if none has, and nothing is drawn.
+bool plot_frame_arrow(const plot_frame *f, screen *s, double time, const char *text);
+
 // --- axes ------------------------------------------------------------------------------
 // The axes of the curves: values on the left of each pane, time below all of them.
 

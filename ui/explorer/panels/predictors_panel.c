@@ -1,15 +1,12 @@
-// The panel of predictors: what each says would come of a touch now, and what then came.
+// The line of predictors: what each says would come of a touch now, and what then came.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "src/base/text_stream.h"
 #include "src/run/run.h"
 
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
-enum { ROWS = 6 };            // of the panel [cells]
-enum { ANSWERS_AT = 16 };     // column behind the labels [cells]
 
 // What the linearised arm says of the state in a row. It is asked once for each row: with
 // more links than two it takes milliseconds, too long for every frame of a run that
@@ -100,121 +97,79 @@ static prediction largest_force_after(const session *s, size_t free)
     return largest;
 }
 
-// The reason why a predictor has no answer, in as many words as there is room for. Links
-// whose state is not known are those of a run that plays: it will say something when that
-// pauses.
-static const char *reason_of(const prediction_answer *answer, int room)
+// Adds a prediction behind its label to a line, with its delay where the screen is wide.
+static void write_prediction(char *text, size_t size, const char *label,
+                             const prediction *p, bool wide)
 {
-    const char *reason = prediction_reason(answer);
-    loss_unless(answer->fault.code != STATUS_NO_MEMORY);
-    if (answer->outcome == PREDICTION_LINKS_UNKNOWN) {
-        return "-";
-    }
-    if ((int)strlen(reason) <= room) {
-        return reason;
-    }
-    if (answer->outcome == PREDICTION_DOUBTFUL) {
-        return "cannot be told";
-    }
-    if (answer->outcome == PREDICTION_FAILED) {
-        return "failed";
-    }
-    return "does not apply";
-}
-
-// A force with its delay, as far as it is known and there is room.
-static void draw_prediction(screen *s, area a, const prediction *p)
-{
-    enum { NARROW = 16 };                // cells
-    const double delay = 1e3 * p->delay; // [ms]
-    if (!p->holds) {
-        area_text(s, a, INK_DIM, "would not hold");
-    } else if (!isfinite(delay)) {
-        area_print(s, a, INK_FORCE, "%.3f N", p->force);
-    } else if (a.width < NARROW) {
-        area_print(s, a, INK_FORCE, "%.2f N, %.0f ms", p->force, delay);
-    } else {
-        area_print(s, a, INK_FORCE, "%.3f N in %.0f ms", p->force, delay);
+    const char *joint = text[0] != '\0' ? ", " : "";
+    text_add(text, size, "%s%s %.*f N", joint, label, wide ? 3 : 2, p->force);
+    if (wide && isfinite(p->delay)) {
+        text_add(text, size, " in %.0f ms", 1e3 * p->delay);
     }
 }
 
-int predictors_rows(const explorer_model *model, const explorer_view *view,
-                    screen_size body)
-{
-    (void)model;
-    (void)view;
-    if (body.width >= SIDE_WIDTH && body.height >= 15) {
-        return ROWS;
-    }
-    return 0;
-}
-
-// What the predictors say, a line each, and how many lines that are.
-static int draw_answers(const explorer_model *model, const explorer_view *view,
-                        layout *lay, screen *s, area a, size_t r)
+// What the predictors say of the state in a row: the forces of those that know one, else
+// why there is none.
+static void write_answers(const explorer_model *model, const explorer_view *view,
+                          layout *lay, size_t r, bool wide, char *text, size_t size)
 {
     static const predictor asked[] = {PREDICTOR_ENERGY, PREDICTOR_IMPACT_DYNAMICS,
                                       PREDICTOR_LINEARISED};
-    enum { ASKED = sizeof asked / sizeof asked[0] };
-    for (int i = 0; i < ASKED && i < a.height; i++) {
+    const char *reason = "-";
+    bool any = false;
+
+    // the first two are the thesis's, of two links
+    const int links =
+        session_parameters_at(&model->session, model->session.now).arm.links;
+    for (size_t i = links == 2 ? 0 : 2; i < sizeof asked / sizeof asked[0]; i++) {
         const prediction_answer answer =
             predictor_answer_at(model, view, lay, asked[i], r);
-        const area line = area_row(a, i), beside = area_right(line, ANSWERS_AT);
-        area_text(s, line, INK_TEXT, answer.short_label);
-        if (prediction_known(&answer)) {
-            draw_prediction(s, beside, &answer.prediction);
-        } else {
-            area_text(s, beside, INK_DIM, reason_of(&answer, beside.width));
+        loss_unless(answer.fault.code != STATUS_NO_MEMORY);
+        if (!prediction_known(&answer)) {
+            continue;
         }
+        if (!answer.prediction.holds) {
+            reason = "the contact would not hold";
+            continue;
+        }
+        any = true;
+        write_prediction(text, size, answer.short_label, &answer.prediction, wide);
     }
-    return ASKED;
+    if (!any) {
+        text_add(text, size, "%s%s", text[0] != '\0' ? ", " : "", reason);
+    }
 }
 
-// What came of the contact that there is, or else of the run's first one.
-static void draw_outcome(const session *e, screen *s, area line, bool touches, size_t r)
+// A row of a screen that has some to spare.
+static int predictors_rows(const explorer_model *model, const explorer_view *view,
+                           screen_size body)
 {
-    const area beside = area_right(line, ANSWERS_AT);
-    if (touches) {
-        const prediction largest = largest_force_after(e, r);
-        area_text(s, line, INK_TEXT, "what came");
-        draw_prediction(s, beside, &largest);
-        return;
-    }
-
-    // not before it has been seen
-    const summary *m = &e->run.summary;
-    const prediction pulse = {.holds = true,
-                              .force = m->first_pulse_peak_N,
-                              .delay = m->first_pulse_time_to_peak_s};
-    area_text(s, line, INK_TEXT, "first pulse");
-    if (e->seen >= m->first_contact_s + m->first_pulse_time_to_peak_s) {
-        draw_prediction(s, beside, &pulse);
-    } else {
-        area_text(s, beside, INK_DIM, "-");
-    }
+    (void)model;
+    (void)view;
+    enum { LEAST = 12 };
+    return body.width >= SIDE_WIDTH && body.height >= LEAST ? 1 : 0;
 }
 
-// What the predictors say of a touch now, or in contact of the one that there was, a line
-// each, and below them what came.
+// What a touch now would bring, or in contact what the one there was has brought, and
+// what was predicted of it.
 static void draw_predictors(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area a)
 {
+    enum { WIDE = 110 };
     const session *e = &model->session;
-    const bool touches = session_sample(e)->contact != 0;
+    const bool touches = session_sample(e)->contact != 0, wide = a.width >= WIDE;
     const size_t r = free_row(e);
-    const char *title = touches ? "when it touched: peak" : "if it touched now: peak";
-    area_frame(s, a, INK_FRAME, title);
+    char text[LINE_TEXT] = "";
+    if (touches) {
+        const prediction largest = largest_force_after(e, r);
+        write_prediction(text, sizeof text, "came", &largest, wide);
+    }
+    write_answers(model, view, lay, r, wide, text, sizeof text);
 
-    // the thesis's two know no other number of links
-    const area inside = area_inside(a);
-    if (session_parameters_at(e, e->now).arm.links != 2) {
-        area_text(s, area_row(inside, inside.height), INK_DIM,
-                  " the first two know two links ");
-    }
-    const int answers = draw_answers(model, view, lay, s, inside, r);
-    if (answers < inside.height) {
-        draw_outcome(e, s, area_row(inside, answers), touches, r);
-    }
+    const area line = {a.x + 1, a.y, a.width - 2, 1};
+    const int used =
+        area_text(s, line, INK_DIM, touches ? "touched: " : "touching now: ");
+    area_words(s, area_right(line, used), INK_TEXT, text);
 }
 
 const panel predictors_panel = {.name = "predictors",

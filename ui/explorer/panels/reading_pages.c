@@ -398,27 +398,6 @@ static void draw_explain(const explorer_model *model, const explorer_view *view,
 
 const panel explain_panel = {.name = "explain", .draw = draw_explain, .key = page_key};
 
-// --- a first visit ---------------------------------------------------------------------
-
-// What is behind it goes on, the first key closes it and acts.
-static void draw_welcome(const explorer_model *model, const explorer_view *view,
-                         layout *lay, screen *s, area body)
-{
-    (void)model;
-    static const char *const steps[] = {
-        "The arm hits the wall by itself. Space stops it, I goes back to just before.",
-        "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.",
-        "o / hybrid Enter presses with 1 N by a control law. ? lists all keys."};
-    page p = begin_page(body, 76);
-    p.column = 3;
-    for (int i = 0; i < 3; i++) {
-        add_keys(&p, (char[]){(char)('1' + i), '\0'}, steps[i]);
-    }
-    draw_page(view, lay, s, body, &p, "a first visit (any key goes on)", 0);
-}
-
-const panel welcome_panel = {.name = "welcome", .draw = draw_welcome, .key = page_key};
-
 // --- the account of the run ------------------------------------------------------------
 
 // The course of the run in sentences.

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "src/base/numbers.h"
+#include "src/scenario/effect.h"
 
 // --- the visible part ------------------------------------------------------------------
 
@@ -171,6 +172,18 @@ static value_range calm_range(const trace *t, int signal, size_t first, size_t l
     return (value_range){low - margin, high + margin};
 }
 
+// Whether a signal of a pane counts for its range. Beside the force readings do not: they
+// answer an impulse with a spike that would flatten all else. Of measured data all do.
+static bool signal_counts(const pane *p, int k, const shown_run *run)
+{
+    const int force = SIGNAL_INDEX(force);
+    const bool has_force = p->signals[0] == force && (p->hidden & 1u) == 0;
+    if (p->hidden >> k & 1) {
+        return false;
+    }
+    return !has_force || p->signals[k] == force || run->kind == SHOWN_MEASURED;
+}
+
 // The range of a pane's signals in one of the runs shown, between two instants.
 static value_range range_in_run(const pane *p, const extremes *e, const shown_run *run,
                                 double from, double to)
@@ -181,7 +194,7 @@ static value_range range_in_run(const pane *p, const extremes *e, const shown_ru
     value_range found = value_range_empty;
     for (int k = 0; k < p->count; k++) {
         const int signal = p->signals[k];
-        if (p->hidden >> k & 1) {
+        if (!signal_counts(p, k, run)) {
             continue;
         }
         if (p->scaling == AXIS_CALM) {
@@ -211,6 +224,17 @@ static value_range range_between(const explorer_model *model, const pane *p, dou
     return found;
 }
 
+value_range view_force_band(const explorer_model *model)
+{
+    const double band = 0.05;
+    const session *s = &model->session;
+    if (effect_none(&s->effective, PARAMETER_INDEX(control.force)) != NULL) {
+        return value_range_empty;
+    }
+    const double command = session_parameters_at(s, s->now).control.force;
+    return (value_range){(1 - band) * command, (1 + band) * command};
+}
+
 bool view_pane_axis(const explorer_model *model, const explorer_view *view, int index,
                     value_range *axis)
 {
@@ -221,12 +245,15 @@ bool view_pane_axis(const explorer_model *model, const explorer_view *view, int 
         return false;
     }
 
-    // the range of what is visible
+    // the range of what is visible, and of what the law is to hold
     double from, to;
     view_window(model, view, &from, &to);
-    const value_range seen = range_between(model, p, from, to, false);
+    value_range seen = range_between(model, p, from, to, false);
     if (!(seen.high >= seen.low)) {
         return false;
+    }
+    if (p->signals[0] == SIGNAL_INDEX(force) && !subtracts) {
+        value_range_widen(&seen, view_force_band(model));
     }
 
     // it counts unless the axis is fixed or grows

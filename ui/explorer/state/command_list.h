@@ -173,8 +173,6 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "colours for that ground")                                                         \
     X("", "colours", act_colours(view, input, argument), "", "auto|true|256|16|mono",    \
       "how many the terminal has")                                                       \
-    X("", "colourby", act_colourby(view, input, argument), "", "signal|run",             \
-      "what has a colour of its own; alone: the other")                                  \
     X("", "pixels", act_pixels(view, input, argument), "", "auto|off",                   \
       "pictures where the terminal has them")                                            \
     X("", "rate", act_rate(view, input, argument), "", "KB|off",                         \

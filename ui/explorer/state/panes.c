@@ -120,7 +120,7 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
             shown++;
         }
     }
-    const char *usual = wishes->controlled ? "1352486" : "1342567";
+    const char *usual = wishes->controlled ? "1532486" : "1432567";
     for (; *usual != '\0' && shown < wishes->room; usual++) {
         pane *p = &set->pane[*usual - '1'];
         if (!p->shown) {

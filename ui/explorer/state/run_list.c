@@ -44,7 +44,7 @@ void input_value_text(const session_input *in, char text[SESSION_INPUT_TEXT])
 }
 
 // A change as a line of text: what it gives what, and from when on.
-static void run_list_input_text(const session_input *in, char *text, size_t size)
+static void write_input(const session_input *in, char *text, size_t size)
 {
     if (in->kind == SESSION_INPUT_PUSH) {
         snprintf(text, size, "push %g at %.4g s", in->value, in->time);
@@ -70,7 +70,7 @@ static void append_others(const session_input *of, int count, const session_inpu
             continue;
         }
         char one[SESSION_INPUT_TEXT + 80];
-        run_list_input_text(&of[i], one, sizeof one);
+        write_input(&of[i], one, sizeof one);
         text_add(text, size, "%s%s", separator, one);
         separator = ", ";
     }
@@ -105,8 +105,6 @@ void run_list_differences(const pinned_run *p, const session *s, char *text, siz
     }
 }
 
-#define AS_OPENED "as opened"
-
 const char *scenario_leaf(const char *name)
 {
     const char *slash = strrchr(name, '/');
@@ -126,17 +124,23 @@ static bool has_name(const run_list *list, const char *name)
     return false;
 }
 
+void run_list_describe(const session *s, char *text, size_t size)
+{
+    // the last change describes best what is new
+    if (s->input_count > 0) {
+        write_input(&s->inputs[s->input_count - 1], text, size);
+    } else {
+        snprintf(text, size, "%s", AS_OPENED);
+    }
+}
+
 // A name for the present run that no other of the list has.
 static void propose_run_name(const run_list *list, const session *s, char name[RUN_NAME])
 {
-    // the last change describes best what is new
     char text[SESSION_INPUT_TEXT + 80];
-    if (s->input_count > 0) {
-        run_list_input_text(&s->inputs[s->input_count - 1], text, sizeof text);
-    } else if (run_list_of_scenario(list, s) < list->count) {
+    run_list_describe(s, text, sizeof text);
+    if (s->input_count == 0 && run_list_of_scenario(list, s) < list->count) {
         snprintf(text, sizeof text, "%s", scenario_leaf(s->base.name));
-    } else {
-        snprintf(text, sizeof text, "%s", AS_OPENED);
     }
 
     // a number follows where that name is taken

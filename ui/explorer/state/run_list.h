@@ -12,6 +12,8 @@
 
 enum { PINNED_RUNS = LESSON_PINNED_RUNS, RUN_NAME = LINE_TEXT };
 
+#define AS_OPENED "as opened" // the name of a run without changes
+
 typedef struct pinned_run {
     char name[RUN_NAME];
     run_result run;   // its rows are shared with the session's
@@ -32,6 +34,9 @@ typedef struct run_list {
 // change, and makes it the baseline. A run of the same changes is not pinned twice.
 // STATUS_BAD_ARGUMENT if the list is full, STATUS_NO_MEMORY.
 status run_list_pin(run_list *list, const session *s, const char *name, fault *f);
+
+// What tells the present run of a session from that of its scenario: its last change.
+void run_list_describe(const session *s, char *text, size_t size);
 
 // Names the runs that are not of the session's scenario, and were "as opened", after
 // their own.
@@ -110,6 +115,7 @@ void lab_sweep_end(lab_sweep *sweep);
 typedef struct solved_limit {
     int signal; // index in signal_table, -1: none to draw it at
     double bound;
+    int quantity; // of the summary that it bounds, -1: none
 } solved_limit;
 
 // --- notes -----------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/base/text_stream.h"
+#include "src/run/resume.h"
 #include "src/rig/controller.h"
 #include "src/rig/rig.h"
 #include "src/scenario/effect.h"
@@ -14,14 +15,19 @@
 // Fills the panes for the present run on the present screen.
 static void define_panes(const explorer_model *model, explorer_view *view)
 {
-    enum { FEWEST = 3, ROWS = 6, HEAD = 8 };
+    // one beside that of force, also beside what a scenario wants, and another one for
+    // every so many rows more
+    enum { FEWEST = 2, HEAD = 12, ROWS = 12 };
     const scenario *base = &model->session.base;
-    const int room = (view->size.height - HEAD) * 3 / 5 / ROWS;
-
-    // a lesson leaves little room next to its own panes
-    const int least = model->lesson.on ? 2 : FEWEST;
+    int room = FEWEST;
+    if (base->pane_count > 0 && !model->lesson.on) {
+        room++;
+    }
+    if (view->size.height > HEAD) {
+        room += (view->size.height - HEAD) * 3 / 5 / ROWS;
+    }
     const pane_wishes wishes = {model_has_law(model), base->panes, base->pane_count,
-                                model->lesson.on, room < least ? least : room};
+                                model->lesson.on, room};
     panes_define(&view->panes, &wishes);
 }
 
@@ -74,10 +80,42 @@ static void begin_lesson(explorer_model *model, explorer_view *view)
     }
 }
 
+// The run of a session's scenario without its changes becomes the one as opened, if it
+// can be had within the patience of a change.
+static status compute_opened_run(explorer_model *model, fault *f)
+{
+    const session *s = &model->session;
+    const run_origin from = {.base = s->base};
+    opened_run *o = &model->opened_run;
+    session plain;
+    TRY(session_reopen(&plain, &from, s->patience, f));
+    const bool complete = plain.computing == NULL;
+    status code = STATUS_OK;
+    if (complete) {
+        code = run_share(&plain.run, &o->run);
+        o->kept = code == STATUS_OK;
+        o->id = (unsigned long)model->opened << 32;
+    }
+    session_finish(&plain);
+    return code;
+}
+
+// Finds the run as opened, of a session that was opened with changes by computing it.
+static void find_opened_run(explorer_model *model)
+{
+    fault f = {0};
+    model_forget_opened_run(model);
+    if (model->session.input_count > 0) {
+        loss_unless(compute_opened_run(model, &f) != STATUS_NO_MEMORY);
+    }
+    loss_unless(model_follow_reference(model, &f) == STATUS_OK);
+}
+
 // How a session is shown at first.
 static void show_from_start(explorer_model *model, explorer_view *view)
 {
     model->opened++;
+    find_opened_run(model);
     if (view->side.panel == PANEL_SWEEP) {
         view->side.panel = PANEL_PARAMETERS;
     }
@@ -101,6 +139,7 @@ status state_init(explorer_model *model, explorer_view *view, scenario *s,
 
     model->visit_count = 1;
     model->limit.signal = model->band.signal = -1;
+    model->limit.quantity = -1;
     model->pinned.baseline = -1;
     model->sweep.metric = SUMMARY_INDEX(peak_force_N);
     view->playback.speed = 0.2;
@@ -121,6 +160,7 @@ void state_finish(explorer_model *model, explorer_view *view)
         extremes_forget(&model->extremes[i]);
     }
     run_log_forget(&model->log);
+    model_forget_opened_run(model);
     scenario_menu_finish(&view->scenarios);
     difference_finish(&model->difference);
     difference_finish(&model->residual);
@@ -138,15 +178,10 @@ void state_finish(explorer_model *model, explorer_view *view)
 // Puts a session in the place of the present one, which is compared with what that was.
 static void replace_session(explorer_model *model, explorer_view *view, session *fresh)
 {
-    const run_list *list = &model->pinned;
     difference_finish(&model->difference);
     lab_sweep_end(&model->sweep);
     session_finish(&model->session);
     model->session = *fresh;
-    if (list->baseline >= 0) {
-        loss_unless(session_keep_beside(&model->session, &list->runs[list->baseline].run,
-                                        NULL) == STATUS_OK);
-    }
     run_list_name_strangers(&model->pinned, &model->session);
     show_from_start(model, view);
 }
@@ -344,6 +379,7 @@ void state_update(explorer_model *model, explorer_view *view)
     }
 
     // what follows the run and its instant
+    loss_unless(model_follow_reference(model, NULL) == STATUS_OK);
     const session *s = &model->session;
     const bool moved = s->computing == NULL && model->measured_run != model_run_id(model);
     if (moved && model->measured_aligned && model->measured.row_count > 0) {

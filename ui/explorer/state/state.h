@@ -16,15 +16,16 @@
 enum {
     SIDE_WIDTH = 72
 }; // least width of a screen with the side panels next to the curves [cells]
-// The present run, pinned runs, runs of a sweep, the run before the adjustment of a
-// value, and measured data.
-enum { SHOWN_RUNS = 1 + PINNED_RUNS + SWEPT_RUNS + 2 };
+// The present run, the run as opened, pinned runs, runs of a sweep, the run before the
+// adjustment of a value, and measured data.
+enum { SHOWN_RUNS = 2 + PINNED_RUNS + SWEPT_RUNS + 2 };
 
 // A run with visible curves.
 typedef struct shown_run {
     enum {
         SHOWN_PRESENT,
         SHOWN_DIFFERENCE,
+        SHOWN_OPENED,
         SHOWN_PINNED,
         SHOWN_SWEPT,
         SHOWN_BEFORE,
@@ -34,6 +35,17 @@ typedef struct shown_run {
     const trace *trace;
     unsigned long id; // of its rows, never 0
 } shown_run;
+
+// The run as the scenario was opened, before any change: what a change is held against as
+// long as no run is pinned.
+typedef struct opened_run {
+    bool kept;
+    bool shown;       // the present run is another one, and no pinned run is this one
+    run_result run;   // its rows are shared with the session's
+    unsigned long id; // of its rows
+    bool pinned;      // a pinned run is this one
+    unsigned long pins_seen; // what that was found out from
+} opened_run;
 
 // Second cursor.
 typedef struct time_mark {
@@ -75,6 +87,8 @@ typedef struct screen_size {
 // The model: the runs, what was done to them, and what follows from them.
 typedef struct explorer_model {
     session session; // the present run, its changes and the cursor
+    opened_run opened_run;
+    unsigned long reference; // the run that session.other is, 0 for none
     run_list pinned;
     lab_sweep sweep;
     run_difference difference;
@@ -189,10 +203,26 @@ shown_run model_run(const explorer_model *model, int index);
 // The row of a run or a difference at the cursor, on the side of an event where that
 // stands.
 size_t model_row(const explorer_model *model, const trace *t);
-// The name of a run, "" for the present one and for runs without a name.
+// The name of a run beside the present one, "" for those without a name.
 const char *model_run_name(const explorer_model *model, int index);
-// The number of pinned runs that are not hidden.
-int model_visible_pins(const explorer_model *model);
+// Whether runs stand beside the present one, so that a colour tells runs and not signals.
+bool model_shows_others(const explorer_model *model);
+// The place of a run among the looks of runs side by side (render/plot/run_style.h), from
+// 1 on; 0 for what has no look of its own.
+int shown_run_rank(const shown_run *run);
+// The colour of that place on a screen.
+ink run_ink(int rank);
+
+// Keeps the run as opened while there is no change, and compares the present run with the
+// baseline of the pinned ones, else with the run as opened. To be called after whatever
+// changes or pins runs. STATUS_NO_MEMORY.
+status model_follow_reference(explorer_model *model, fault *f);
+// Gives up the run as opened.
+void model_forget_opened_run(explorer_model *model);
+// The name of the run that the present one is compared with; "" without one.
+const char *model_reference_name(const explorer_model *model);
+// Its place among the looks.
+int model_reference_rank(const explorer_model *model);
 // The parameters at the cursor.
 parameters model_parameters(const explorer_model *model);
 
@@ -206,6 +236,10 @@ void view_show_part(const explorer_model *model, explorer_view *view, double fro
 // Low and high of each block of a signal of a run, low above high in a block without a
 // finite value; NULL if they do not cover all rows of its trace.
 const double *extremes_pairs(const extremes *e, const shown_run *run, int signal);
+
+// The band in which the force counts as settled at what the law is to hold at the cursor
+// [N], as `settling_time_s` has it; empty without such a law.
+value_range view_force_band(const explorer_model *model);
 
 // The axis of a pane in the visible part of the run; false if no signal of it has a value
 // there.

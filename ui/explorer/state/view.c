@@ -52,10 +52,6 @@ const look_choice look_choices[] = {
      {"off", "on"},
      {"the mouse is off: the terminal selects", "clicks move the cursor"}},
     {LOOK("lanes", lanes), true, {"auto", "all", "off"}, {"lanes: %s"}},
-    {LOOK("colourby", by_run),
-     true,
-     {"signal", "run"},
-     {"a colour for each signal", "a colour for each run"}},
     {NULL},
 };
 

@@ -12,11 +12,12 @@
 
 // The places of panels.
 typedef enum panel_place {
-    PLACE_STRIP, // below the title, while there is a lesson
+    PLACE_STRIP, // below the title: results, and the step of a lesson
     PLACE_TOP,   // above the curves
     PLACE_MAIN,  // below that
     PLACE_SIDE,  // on the right; Tab selects one of these
     PLACE_STACK, // below the selected one, as many as have room
+    PLACE_FOOT,  // a line below all these
     PLACE_PAGE,  // opens over the others
     PLACE_PROMPT // above the prompt while that is open
 } panel_place;
@@ -24,6 +25,7 @@ typedef enum panel_place {
 // identity, place, description; side panels in the order in which Tab selects them,
 // stacked ones from top to bottom
 #define PANEL_LIST(X)                                                                    \
+    X(PANEL_RESULTS, PLACE_STRIP, results_panel)                                         \
     X(PANEL_LESSON, PLACE_STRIP, lesson_panel)                                           \
     X(PANEL_ARM, PLACE_TOP, arm_panel)                                                   \
     X(PANEL_CURVES, PLACE_MAIN, curves_panel)                                            \
@@ -31,10 +33,8 @@ typedef enum panel_place {
     X(PANEL_VALUES, PLACE_SIDE, values_panel)                                            \
     X(PANEL_STATISTICS, PLACE_SIDE, statistics_panel)                                    \
     X(PANEL_SWEEP, PLACE_SIDE, sweep_panel)                                              \
-    X(PANEL_RUNS, PLACE_STACK, runs_panel)                                               \
     X(PANEL_CONTROLLER, PLACE_STACK, controller_panel)                                   \
-    X(PANEL_PREDICTORS, PLACE_STACK, predictors_panel)                                   \
-    X(PANEL_LOG, PLACE_STACK, log_panel)                                                 \
+    X(PANEL_PREDICTORS, PLACE_FOOT, predictors_panel)                                    \
     X(PANEL_HELP, PLACE_PAGE, help_panel)                                                \
     X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                      \
     X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)                                    \
@@ -45,7 +45,6 @@ typedef enum panel_place {
     X(PANEL_WHY, PLACE_PAGE, why_panel)                                                  \
     X(PANEL_POLES, PLACE_PAGE, poles_panel)                                              \
     X(PANEL_NOTES, PLACE_PAGE, notes_panel)                                              \
-    X(PANEL_WELCOME, PLACE_PAGE, welcome_panel)                                          \
     X(PANEL_PALETTE, PLACE_PROMPT, palette_panel)
 
 typedef enum panel_id {
@@ -99,7 +98,6 @@ typedef struct looks {
     int close_up;    // close_up_choice
     double rate;     // most that pictures may take [kB/s], 0: no limit
     double bending;  // factor by which bending is enlarged
-    int by_run;      // not 0: a run has one colour, and lines tell the signals
     int mouse;       // not 0: mouse reports are on
     bool redraw;     // the whole screen must be redrawn
 } looks;

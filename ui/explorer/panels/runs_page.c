@@ -1,105 +1,9 @@
-// The runs: their legend beside the curves, the page of those that are pinned, the
-// comparison of two.
+// The pages of runs: those that are pinned, and two of them in numbers.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
 
-// --- the legend ------------------------------------------------------------------------
-// The legend of runs: the present one and those pinned, with their lines and peaks.
-
 enum { SAMPLE = 4, PEAK = 10 }; // columns of a line's sample and of a peak [cells]
-
-// A row for each run in a frame, none without a pinned one or without room.
-static int runs_rows(const explorer_model *model, const explorer_view *view,
-                     screen_size body)
-{
-    (void)view;
-    const bool fits = body.width >= SIDE_WIDTH && body.height >= 12;
-    if (fits && model->pinned.count > 0) {
-        return model->pinned.count + 3;
-    }
-    return 0;
-}
-
-// A run in a line: how it is drawn, its name, its peak force.
-static void draw_legend_line(screen *s, area line, const char *name, double peak,
-                             unsigned pattern, ink colour)
-{
-    const area peak_area = area_right(line, line.width - PEAK);
-    const area name_area = {line.x + SAMPLE + 1, line.y, line.width - SAMPLE - 1 - PEAK,
-                            1};
-    draw_line_sample(s, line.x, line.y, SAMPLE, pattern, colour);
-    area_words(s, name_area, INK_TEXT, name);
-    area_print(s, peak_area, INK_FORCE, "%8s N", draw_number(peak).text);
-}
-
-// How the curves of a pinned run are drawn: hidden ones not, a single one in a colour of
-// its own, several by patterns unless runs have colours.
-static void pinned_look(const explorer_model *model, const explorer_view *view, int index,
-                        unsigned *pattern, ink *colour)
-{
-    const bool by_run = view->looks.by_run != 0;
-    const bool single = model_visible_pins(model) == 1;
-    *pattern = run_pattern(index);
-    *colour = INK_TEXT;
-    if (single) {
-        *pattern = style_pattern(LINE_SOLID);
-        *colour = INK_OTHER;
-    }
-    if (by_run) {
-        *pattern = style_pattern(LINE_SOLID);
-        *colour = run_ink(index);
-    }
-    if (model->pinned.runs[index].hidden) {
-        *pattern = 0;
-    }
-}
-
-// The present run and those that are pinned, a line each.
-static void draw_runs(const explorer_model *model, const explorer_view *view, layout *lay,
-                      screen *s, area a)
-{
-    const run_list *list = &model->pinned;
-    const area inside = area_inside(a);
-    area_frame(s, a, INK_FRAME, "runs, peaks (R: list)");
-    const ink present_ink = view->looks.by_run ? run_ink(-1) : INK_TEXT;
-    draw_legend_line(s, area_row(inside, 0), "now",
-                     model->session.run.summary.peak_force_N, style_pattern(LINE_SOLID),
-                     present_ink);
-
-    // those that are pinned, the baseline with a mark
-    for (int i = 0; i < list->count && i + 1 < inside.height; i++) {
-        const pinned_run *p = &list->runs[i];
-        const area line = area_row(inside, i + 1);
-        unsigned pattern;
-        ink colour;
-        pinned_look(model, view, i, &pattern, &colour);
-        draw_legend_line(s, line, p->name, p->run.summary.peak_force_N, pattern, colour);
-        if (i == list->baseline) {
-            screen_put(s, a.x + 1, line.y, GLYPH_POINTER, INK_EVENT);
-        }
-        layout_add_hit(lay, (hit_area){PANEL_RUNS, PART_LINES, i, line});
-    }
-}
-
-// A click hides a run or shows it.
-static bool point_at_runs(explorer_model *model, explorer_view *view,
-                          explorer_input *input, const panel_gesture *g)
-{
-    (void)input;
-    (void)view;
-    if (g->event.kind != POINTER_PRESS) {
-        return false;
-    }
-    pinned_run *p = &model->pinned.runs[g->hit.index];
-    p->hidden = !p->hidden;
-    return true;
-}
-
-const panel runs_panel = {.name = "runs",
-                          .rows = runs_rows,
-                          .draw = draw_runs,
-                          .point = point_at_runs};
 
 // --- the page --------------------------------------------------------------------------
 // The page of pinned runs: what differs, and what can be done with them.
@@ -113,14 +17,16 @@ static void draw_pinned(const explorer_model *model, screen *s, area a, int inde
     const pinned_run *p = &model->pinned.runs[index];
     const int name_width = a.width >= 80 ? NAME_WIDTH : NARROW_NAME_WIDTH;
     const char *mark = index == model->pinned.baseline ? "\u25b8" : " ";
+    const shown_run run = {.kind = SHOWN_PINNED, .index = index};
     unsigned pattern = 0;
     ink name_ink = INK_DIM;
     if (!p->hidden) {
-        pattern = run_pattern(index);
+        pattern = style_pattern(LINE_SOLID);
         name_ink = INK_TITLE;
     }
     screen_print(s, a.x, a.y, SAMPLE_AT, INK_DIM, "%s%d", mark, index + 1);
-    draw_line_sample(s, a.x + SAMPLE_AT, a.y, SAMPLE, pattern, INK_TEXT);
+    draw_line_sample(s, a.x + SAMPLE_AT, a.y, SAMPLE, pattern,
+                     run_ink(shown_run_rank(&run)));
     screen_words(s, a.x + NAME_AT, a.y, name_width - 1, name_ink, p->name);
 
     // behind the name
@@ -256,10 +162,10 @@ static void draw_comparison_head(const explorer_model *model, screen *s, area li
     const area now = area_right(line, form->numbers);
     area_print(s, now, INK_DIM, "%*s", form->width, "now");
     if (model->session.has_other) {
-        // under the name that the legend has
+        // under the name that the strip of results has
         const area other = area_right(now, form->width + 1);
         screen_words(s, other.x, other.y, form->width - 1, INK_DIM,
-                     model->pinned.runs[model->pinned.baseline].name);
+                     model_reference_name(model));
         screen_print(s, other.x + form->width - 1, other.y, form->width, INK_DIM, "%*s",
                      form->width, "change");
     }
