@@ -88,6 +88,5 @@ if [ ! -e "$work/build.ninja" ]; then
 fi
 ninja -C "$work" ui/web/impactlab.js
 
-mkdir -p "$page"
-cp "$work/ui/web/impactlab.js" "$work/ui/web/impactlab.wasm" "$page"
-echo "web: $page"
+python3 "$source_root/ui/web/page_parts.py" "$source_root" "$work/ui/web" "$page"
+echo "web: $page/index.html for a server, $page/impactlab.html for a file by itself"

@@ -34,8 +34,7 @@ export function labOf(module) {
 
   return {
     tables: () => JSON.parse(read(module._page_tables())),
-    read: (name, text) =>
-      JSON.parse(read(withTexts([name, text], module._page_read))),
+    read: (name, text) => JSON.parse(read(withTexts([name, text], module._page_read))),
     // `changes` has a value for each path
     change: (changes) => {
       const lines = Object.entries(changes).map(([path, value]) => `${path}=${value}`);
@@ -47,8 +46,7 @@ export function labOf(module) {
     predictions: () => read(module._page_predictions()),
     rows: () => module._page_rows(),
     freedoms: () => module._page_freedoms(),
-    angles: () =>
-      numbers(module._page_angles(), module._page_rows() * module._page_freedoms()),
+    angles: () => numbers(module._page_angles(), module._page_rows() * module._page_freedoms()),
     signal: (name) => {
       const place = withTexts([name], module._page_signal);
       if (place === 0) {
