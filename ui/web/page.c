@@ -10,9 +10,9 @@
 #include "src/run/export.h"
 #include "src/run/run.h"
 
-static scenario read;    // as its text says
+static scenario opened;  // as its text says
 static scenario changed; // with what was changed in the page
-static bool is_read, is_changed, is_run;
+static bool is_opened, is_changed, is_run;
 static run_result result; // of `changed`
 static double deadline;   // of the run [ms of emscripten_get_now]
 static char *answer;      // the text that was returned last
@@ -159,7 +159,7 @@ static void forget_changes(void)
 static status change(char *const *assignments, int count, json_t *faults)
 {
     forget_changes();
-    const status copied = scenario_copy(&changed, &read);
+    const status copied = scenario_copy(&changed, &opened);
     if (copied != STATUS_OK) {
         return copied;
     }
@@ -191,16 +191,16 @@ EMSCRIPTEN_KEEPALIVE const char *page_read(const char *name, const char *text)
 {
     // what was there before is gone, even if this one has faults
     forget_changes();
-    if (is_read) {
-        scenario_finish(&read);
+    if (is_opened) {
+        scenario_finish(&opened);
     }
     json_t *faults = json_array();
     status code =
-        scenario_parse(&read, text, strlen(text), name, name, keep_sentence, faults);
-    is_read = code == STATUS_OK;
+        scenario_parse(&opened, text, strlen(text), name, name, keep_sentence, faults);
+    is_opened = code == STATUS_OK;
 
-    const int line = read.refused.line;
-    if (is_read) {
+    const int line = opened.refused.line;
+    if (is_opened) {
         code = change(NULL, 0, faults);
     }
     return answer_scenario(code, faults, line);
@@ -220,7 +220,7 @@ EMSCRIPTEN_KEEPALIVE const char *page_change(const char *assignments)
 
     json_t *faults = json_array();
     status code = STATUS_NO_MEMORY;
-    if (is_read && have_memory) {
+    if (is_opened && have_memory) {
         code = change(each, count, faults);
     }
     free(lines);
