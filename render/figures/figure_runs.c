@@ -27,22 +27,18 @@ opened_run *run_open(const char *name, const char *change, fault *f)
     return run_open_changed(name, &change, 1, NULL, f);
 }
 
-// Opens the scenario, changes it, runs it.
-opened_run *run_open_changed(const char *name, const char *const *changes, int count,
-                             run_monitor *monitor, fault *f)
+// Changes a scenario that was opened with `code` and `first` fault, and runs it.
+static opened_run *run_opened(opened_run *r, status code, fault *first,
+                              const char *const *changes, int count, run_monitor *monitor,
+                              fault *f)
 {
     const run_options options = {.keep_trace = true, .monitor = monitor};
-    fault first = {STATUS_OK, ""};
-    opened_run *r = g_new0(opened_run, 1);
-    status code = scenario_open(&r->scenario, name, keep_first_fault, &first);
-
-    // changes override what the file says
     if (code == STATUS_OK && count > 0) {
         code = scenario_override_all(&r->scenario, (char *const *)changes, count,
-                                     keep_first_fault, &first);
+                                     keep_first_fault, first);
     }
     if (code != STATUS_OK) {
-        fault_set(f, code, "%s", first.text);
+        fault_set(f, code, "%s", first->text);
         run_close(r);
         return NULL;
     }
@@ -50,11 +46,30 @@ opened_run *run_open_changed(const char *name, const char *const *changes, int c
     // and the run
     code = run_scenario_with(&r->scenario, &options, &r->result);
     if (code != STATUS_OK) {
-        fault_set(f, code, "%s: %s", name, r->result.summary.message);
+        fault_set(f, code, "%s: %s", r->scenario.name, r->result.summary.message);
         run_close(r);
         return NULL;
     }
     return r;
+}
+
+opened_run *run_open_changed(const char *name, const char *const *changes, int count,
+                             run_monitor *monitor, fault *f)
+{
+    fault first = {STATUS_OK, ""};
+    opened_run *r = g_new0(opened_run, 1);
+    const status code = scenario_open(&r->scenario, name, keep_first_fault, &first);
+    return run_opened(r, code, &first, changes, count, monitor, f);
+}
+
+opened_run *run_open_text(const char *text, const char *name, const char *const *changes,
+                          int count, fault *f)
+{
+    fault first = {STATUS_OK, ""};
+    opened_run *r = g_new0(opened_run, 1);
+    const status code = scenario_parse(&r->scenario, text, strlen(text), name, name,
+                                       keep_first_fault, &first);
+    return run_opened(r, code, &first, changes, count, NULL, f);
 }
 
 // The run ends with the figure.

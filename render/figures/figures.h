@@ -123,6 +123,10 @@ void run_close(void *run);
 opened_run *run_open_changed(const char *name, const char *const *changes, int count,
                              run_monitor *monitor, fault *f);
 
+// The same of the text of a scenario file; `name` is the scenario's in messages.
+opened_run *run_open_text(const char *text, const char *name, const char *const *changes,
+                          int count, fault *f);
+
 // A figure of empty panels with an order's title and a run of its scenario, which it
 // owns: *run. NULL with the reason if the run fails.
 owned_figure *run_plot_create(const figure_order *order, const char *change, int panels,
@@ -149,6 +153,15 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels,
 // otherwise the status of runs and files.
 status recipe_open(const char *path, const figure_options *o, fault_handler report,
                    void *context, artwork *out, fault *f);
+
+// The same of a recipe's text, which is or will be at `path`.
+status recipe_open_text(const char *text, size_t length, const char *path,
+                        const figure_options *o, fault_handler report, void *context,
+                        artwork *out, fault *f);
+
+// The command that draws a recipe, as its pictures remember it: in which folder the
+// recipe is does not change them. To be freed with g_free.
+char *recipe_command(const char *path);
 
 // Whether a file is a recipe: YAML with panels. False for a file that cannot be read.
 bool recipe_is(const char *path);

@@ -1,12 +1,15 @@
 // Figures from recipes: what the recipe names is opened, and what it shows is described.
 #include "render/figures/figures.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "render/figures/recipe_parts.h"
+#include "render/plot/axis.h"
 #include "render/plot/run_style.h"
 #include "render/plot/study_plot.h"
 #include "src/base/input_file.h"
+#include "src/run/spectrum.h"
 
 #define CURVES_ROOM 0.05 // of a table's values, free above and below its curve
 #define POINTS_ROOM 0.03 // of its other axis, free at both ends
@@ -46,10 +49,14 @@ static status open_measured(recipe *r, recipe_source *s, const char *path, fault
 static status open_recipe_run(recipe *r, recipe_source *s, const char *path, fault *f)
 {
     const char *name = s->scenario;
-    if (g_file_test(path, G_FILE_TEST_IS_REGULAR)) {
-        name = path;
+    opened_run *run = NULL;
+    if (recipe_is_text(s)) {
+        run = run_open_text(name, s->name, s->change, s->change_count, f);
+    } else if (g_file_test(path, G_FILE_TEST_IS_REGULAR)) {
+        run = run_open_changed(path, s->change, s->change_count, NULL, f);
+    } else {
+        run = run_open_changed(name, s->change, s->change_count, NULL, f);
     }
-    opened_run *run = run_open_changed(name, s->change, s->change_count, NULL, f);
     s->run = owned_figure_own(r->plot, run, run_close);
     return f->code;
 }
@@ -57,6 +64,9 @@ static status open_recipe_run(recipe *r, recipe_source *s, const char *path, fau
 // Reads the columns of a sweep's database that are shown.
 static status open_sweep_table(recipe *r, recipe_source *s, const char *path, fault *f)
 {
+    if (s->columns[0] != NULL) {
+        return STATUS_OK; // its rows stand in the recipe
+    }
     const char *const keys[] = {s->x, s->y, s->z};
     const int columns = s->z != NULL ? 3 : 2;
     const status code = sweep_table_read(path, keys, columns, s->columns, &s->count, f);
@@ -74,7 +84,8 @@ static status open_source(recipe *r, recipe_source *s, const char *recipe_path, 
                                                [SOURCE_DATA] = open_measured,
                                                [SOURCE_TABLE] = open_sweep_table};
     fault why = {0};
-    g_autofree char *path = path_of(recipe_path, text_or(s->scenario, s->file));
+    g_autofree char *path =
+        path_of(recipe_path, text_or(text_or(s->scenario, s->file), ""));
     const status code = open[s->kind](r, s, path, &why);
 
     // the place in the recipe stands before what went wrong
@@ -179,7 +190,47 @@ static void add_table(recipe *r, int panel, const recipe_source *s)
 
 // ---- curves
 
-// A recorded signal of a run, or of measured data.
+// The amplitudes of a signal in the stretch that the recipe takes.
+static figure_series spectrum_series(recipe *r, const trace_run *run, int index)
+{
+    const trace *rows = &run->result->trace;
+    figure_series s = trace_series_over(run, index, SIGNAL_INDEX(time), 0, -1, r->plot);
+    if (rows->row_count == 0) {
+        return s;
+    }
+    const double from = fmax(r->from, rows->rows[0].time);
+    const double to = fmin(r->to, rows->rows[rows->row_count - 1].time);
+    trace_spectrum spectrum;
+    if (!(from < to)) {
+        return s;
+    }
+    trace_spectrum_take(rows, index, from, to, &spectrum);
+
+    // a line of the spectrum is a point of the curve
+    double *x = owned_figure_numbers(r->plot, SPECTRUM_LINES);
+    double *y = owned_figure_numbers(r->plot, SPECTRUM_LINES);
+    for (int k = 1; k < spectrum.lines; k++) {
+        x[s.count] = k * spectrum.step;
+        y[s.count++] = spectrum.amplitude[k];
+    }
+    s.x = x;
+    s.y = y;
+    return s;
+}
+
+// A signal over what the recipe has across its panels.
+static figure_series recipe_series(recipe *r, const trace_run *run, int index)
+{
+    if (r->spectrum) {
+        return spectrum_series(r, run, index);
+    }
+    if (r->over != SIGNAL_INDEX(time)) {
+        return trace_series_over(run, index, r->over, r->from, r->to, r->plot);
+    }
+    return trace_series(run, index, r->plot);
+}
+
+// A signal of a run, or of measured data.
 static void add_recorded(recipe *r, int panel, const recipe_source *s, int index,
                          int signals)
 {
@@ -194,8 +245,7 @@ static void add_recorded(recipe *r, int panel, const recipe_source *s, int index
 
     const trace_run run = {&s->run->scenario, &s->run->result, .points = data};
     const int colour_of_run = colour_of(p->series_count);
-    figure_series *out =
-        owned_figure_add(r->plot, panel, trace_series(&run, index, r->plot));
+    figure_series *out = owned_figure_add(r->plot, panel, recipe_series(r, &run, index));
 
     // several signals of one run are told apart by symbols, several runs by labels
     const char *label = source_label(r, s);
@@ -233,7 +283,38 @@ static void add_signals(recipe *r, int panel, const recipe_source *s,
                         const recipe_panel *from)
 {
     for (int i = 0; i < from->signal_count; i++) {
-        add_recorded(r, panel, s, signal_index(from->signals[i]), from->signal_count);
+        add_recorded(r, panel, s, signal_find_any(from->signals[i]), from->signal_count);
+    }
+    if (from->impulses && s->kind == SOURCE_RUN) {
+        const trace_run run = {&s->run->scenario, &s->run->result, .name = s->name,
+                               .rank = s->rank};
+        trace_add_impulses(r->plot, &r->plot->panels[panel], &run);
+    }
+}
+
+// The curve of a run shifted up and down by the tolerance of a panel's band.
+static void add_recipe_band(recipe *r, int panel)
+{
+    const recipe_panel *from = &r->panels[panel];
+    const opened_run *round = r->sources[from->round].run;
+    const trace_run run = {&round->scenario, &round->result};
+    const int signal = signal_find_any(from->signals[0]);
+    const char *label = owned_figure_printf(r->plot, "± %g\u2009%s", from->tolerance,
+                                            signal_table[signal].unit);
+    for (int side = -1; side <= 1; side += 2) {
+        if (r->plot->panels[panel].series_count == PANEL_SERIES) {
+            return;
+        }
+        const figure_series s = recipe_series(r, &run, signal);
+        double *y = owned_figure_numbers(r->plot, s.count);
+        double *x = owned_figure_numbers(r->plot, s.count);
+        for (size_t i = 0; i < s.count; i++) {
+            x[i] = series_x(&s, i);
+            y[i] = series_y(&s, i) + side * from->tolerance;
+        }
+        owned_figure_add(r->plot, panel,
+                         (figure_series){"band", side < 0 ? label : NULL, x, y, s.count,
+                                         .run = RUN_BEHIND, .secondary = true});
     }
 }
 
@@ -246,7 +327,7 @@ static void add_recipe_difference(recipe *r, int panel)
         owned_figure_add(r->plot, panel,
                          trace_difference(&of->run->result.trace,
                                           &less->run->result.trace,
-                                          signal_index(from->signals[0]), r->plot));
+                                          signal_find_any(from->signals[0]), r->plot));
 
     // points where data are compared, else a line
     s->name = "difference";
@@ -260,10 +341,16 @@ static void add_recipe_difference(recipe *r, int panel)
 
 // ---- panels
 
+// An expression as it is written, as markup.
+static const char *symbol_of_expression(recipe *r, int index)
+{
+    return owned_figure_keep(r->plot, text_escape(signal_table[index].name));
+}
+
 // The axis of a panel's signals: "Contact force f (N)" of a single one.
 static figure_axis signals_axis(recipe *r, const recipe_panel *from)
 {
-    const int index = signal_index(from->signals[0]);
+    const int index = signal_find_any(from->signals[0]);
     const signal_info *signal = &signal_table[index];
     g_autofree char *symbol = trace_symbol(first_scenario(r), index);
     figure_axis y = {.name = signal->name, .unit = signal->unit};
@@ -272,6 +359,10 @@ static figure_axis signals_axis(recipe *r, const recipe_panel *from)
     } else if (from->compared) {
         y.label = owned_figure_printf(r->plot, "Difference of %s", symbol);
         y.symbol = owned_figure_printf(r->plot, "Δ%s", symbol);
+    } else if (r->spectrum) {
+        y.label = owned_figure_printf(r->plot, "Amplitude of %s", symbol);
+    } else if (signal_is_derived(index)) {
+        y.label = symbol_of_expression(r, index);
     } else {
         y.label = owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
         y.symbol = owned_figure_keep(r->plot, g_steal_pointer(&symbol));
@@ -304,11 +395,22 @@ static void describe_vertical(recipe *r, const recipe_panel *from, figure_axis *
     }
 }
 
+// The curves of a panel before those of its band.
+static int curves_before_band(const figure_panel *p)
+{
+    int count = p->series_count;
+    while (count > 0 && p->series[count - 1].run == RUN_BEHIND) {
+        count--;
+    }
+    return count;
+}
+
 // Whether two panels have curves of the same labels and colours.
 static bool have_one_legend(const figure_panel *a, const figure_panel *b)
 {
-    bool same = a->series_count == b->series_count;
-    for (int i = 0; i < a->series_count && same; i++) {
+    const int count = curves_before_band(a);
+    bool same = count == a->series_count && count == curves_before_band(b);
+    for (int i = 0; i < count && same; i++) {
         same = g_strcmp0(a->series[i].label, b->series[i].label) == 0 &&
                a->series[i].colour == b->series[i].colour;
     }
@@ -322,6 +424,7 @@ static void describe_recipe_panel(recipe *r, int panel)
     figure_panel *p = &r->plot->panels[panel];
     *p = from->shown;
     p->notes = from->notes;
+    p->levels = from->levels;
     p->series = r->plot->series[panel];
     describe_vertical(r, from, &p->y);
 
@@ -338,20 +441,45 @@ static void describe_recipe_panel(recipe *r, int panel)
         }
     }
 
+    if (from->round >= 0 && from->signal_count > 0) {
+        add_recipe_band(r, panel);
+    }
+
     // a panel with the first one's curves needs no legend of its own
     p->keyless = panel > 0 && have_one_legend(p, &r->plot->panels[0]);
 }
 
 // ---- the page
 
-// The axis below all panels: time, or the first column of the first table; and what the
-// recipe says of it.
+// The axis of a signal across the panels.
+static figure_axis signal_axis(recipe *r, int index)
+{
+    const signal_info *signal = &signal_table[index];
+    figure_axis x = {.name = signal->name, .unit = signal->unit};
+    if (signal_is_derived(index)) {
+        x.label = symbol_of_expression(r, index);
+    } else {
+        g_autofree char *symbol = trace_symbol(first_scenario(r), index);
+        x.label = owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
+    }
+    return x;
+}
+
+// The axis below all panels: time, another signal, frequency, or the first column of the
+// first table; and what the recipe says of it.
 static void describe_horizontal(recipe *r, figure_axis *x)
 {
     const recipe_source *first = &r->sources[0];
     figure_axis usual = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
     if (first->kind == SOURCE_TABLE) {
         usual = column_axis(r, first->x);
+    } else if (r->spectrum) {
+        usual = (figure_axis){.name = "frequency",
+                              .label = "Frequency <i>ν</i>",
+                              .unit = "Hz"};
+    } else if (r->over != SIGNAL_INDEX(time)) {
+        usual = signal_axis(r, r->over);
+        x->room = POINTS_ROOM;
     }
     if (first->kind == SOURCE_TABLE && first->z == NULL) {
         x->room = POINTS_ROOM;
@@ -392,14 +520,14 @@ static void describe_recipe(recipe *r, const figure_options *o)
     shown->parameters = owned_figure_keep(r->plot, g_string_free(values, FALSE));
 
     // the first run's contact
-    if (r->contact && r->sources[0].kind == SOURCE_RUN) {
+    const bool by_time = r->over == SIGNAL_INDEX(time) && !r->spectrum;
+    if (r->contact && by_time && r->sources[0].kind == SOURCE_RUN) {
         trace_shade(r->plot, &r->sources[0].run->result.trace, false);
     }
     figure_take_look(shown, &o->look);
     figure_take_range(shown, o);
 }
 
-// Reads the recipe, opens its sources, describes its figure.
 status recipe_open(const char *path, const figure_options *o, fault_handler report,
                    void *context, artwork *out, fault *f)
 {
@@ -409,7 +537,16 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
     if (text == NULL) {
         return input_file_fault(path, &why, f);
     }
+    const status code = recipe_open_text(text, length, path, o, report, context, out, f);
+    free(text);
+    return code;
+}
 
+// Reads the recipe, opens its sources, describes its figure.
+status recipe_open_text(const char *text, size_t length, const char *path,
+                        const figure_options *o, fault_handler report, void *context,
+                        artwork *out, fault *f)
+{
     // what it says, and what it names
     recipe *r = g_new0(recipe, 1);
     status code = STATUS_OK;
@@ -417,7 +554,6 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
         code = STATUS_BAD_SCENARIO;
     }
     owned_figure_keep(r->plot, r);
-    free(text);
     for (int i = 0; i < r->source_count && code == STATUS_OK; i++) {
         code = open_source(r, &r->sources[i], path, f);
     }
@@ -430,6 +566,12 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
     describe_recipe(r, o);
     *out = artwork_of_owned(r->plot);
     return STATUS_OK;
+}
+
+char *recipe_command(const char *path)
+{
+    g_autofree char *leaf = g_path_get_basename(path), *quoted = g_shell_quote(leaf);
+    return g_strconcat("impactlab plot ", quoted, NULL);
 }
 
 // A map with panels.

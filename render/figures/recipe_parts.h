@@ -10,15 +10,16 @@
 
 // --- a recipe after reading
 
-enum { RECIPE_SOURCES = 16, RECIPE_CHANGES = 16, RECIPE_NOTES = 8, RECIPE_MARKS = 16 };
+enum { RECIPE_SOURCES = 48, RECIPE_CHANGES = 16, RECIPE_NOTES = 8, RECIPE_MARKS = 40 };
+enum { RECIPE_LEVELS = 8 };
 
 // A source of curves: a run, measured data, or a table with a column for each axis.
 typedef enum source_kind { SOURCE_RUN, SOURCE_DATA, SOURCE_TABLE } source_kind;
 
 typedef struct recipe_source {
     source_kind kind;
-    const char *name, *label;           // label NULL: the name
-    const char *scenario;               // of a run
+    const char *name, *label; // label NULL: the name
+    const char *scenario; // of a run: a name, a file, or where it has lines its own text
     const char *change[RECIPE_CHANGES]; // of a run, "arm.k2=3"
     int change_count;
     const char *file;   // of data (CSV), of a table (a sweep's database)
@@ -26,7 +27,8 @@ typedef struct recipe_source {
     const char *x, *y;  // of a table: columns
     const char *z;      // of a table: the column of a map's colours; NULL: a curve
     double shift;       // of data [s]
-    int rank;           // of a run, from 1: its look wherever it shows
+    double look;        // of a run, from 1, 0: by its place
+    int rank;           // the same
     place at;           // its place in the recipe
 
     // once it is opened
@@ -42,6 +44,10 @@ typedef struct recipe_panel {
     figure_note notes[RECIPE_NOTES];
     const char *signals[TRACE_SIGNALS];
     int signal_count;
+    figure_level levels[RECIPE_LEVELS];
+    bool impulses;               // of its runs, in a strip above it
+    int round;                   // run with a band on both sides of its curve, -1: none
+    double tolerance;            // of that band
     int sources[RECIPE_SOURCES]; // indices, in the order of the recipe
     int source_count;
     bool compared; // shows a difference, of two sources
@@ -49,8 +55,12 @@ typedef struct recipe_panel {
 } recipe_panel;
 
 typedef struct recipe {
-    figure shown; // title, caption, numbers of panels and marks, its horizontal axis
+    figure
+        shown; // title, caption, width, numbers of panels and marks, its horizontal axis
     bool logarithmic;
+    int over;        // signal across the panels, of the table; time unless it is said
+    bool spectrum;   // the panels show amplitudes over frequency
+    double from, to; // stretch of the runs that a signal across or a spectrum takes [s]
     double columns;
     bool contact; // the first run's contact is shaded
     recipe_source sources[RECIPE_SOURCES];
@@ -103,7 +113,7 @@ typedef struct recipe_key {
     bool whole;
 } recipe_key;
 
-enum { RECIPE_KEYS = 13 }; // most keys of a map, with one that is NULL after the last
+enum { RECIPE_KEYS = 16 }; // most keys of a map, with one that is NULL after the last
 
 // A map: what sentences call it, an example of a line, and its keys, which are read in
 // this order.
@@ -162,6 +172,9 @@ recipe_value_reader recipe_read_multiples;
 
 // The items of the lists of runs, data and tables.
 extern const recipe_form recipe_runs, recipe_data, recipe_tables;
+
+// Whether a run's scenario is the text of one.
+bool recipe_is_text(const recipe_source *s);
 
 // Whether a parameter has that path; reports if none has.
 bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char *path);

@@ -1,5 +1,6 @@
 // Recipes: from YAML to what a figure shows.
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "render/figures/recipe_parts.h"
@@ -12,11 +13,32 @@ static bool has_other_unit(const recipe_panel *p, int index)
     if (p->signal_count == 0) {
         return false;
     }
-    const int first = signal_find(p->signals[0]);
+    const int first = signal_find_any(p->signals[0]);
     return strcmp(signal_table[first].unit, signal_table[index].unit) != 0;
 }
 
-// The recorded signals that a panel shows.
+// The index of a signal by its name, or of an expression of some; -1 after a fault.
+static int find_signal(recipe_context *c, const tree_node *node)
+{
+    fault f = {0};
+    const char *text = node_is_scalar(node) ? node->text : "";
+    int index = signal_find(text);
+    if (index > 0) {
+        return index;
+    }
+    if (text[strcspn(text, "+-*/(")] == '\0') {
+        report_node(&c->reader, node, "there is no signal '%.60s', did you mean '%s'?",
+                    text, nearest_signal(text));
+        return -1;
+    }
+    index = signal_of_text(text, &f);
+    if (index < 0) {
+        report_node(&c->reader, node, "%s", f.text);
+    }
+    return index;
+}
+
+// The signals that a panel shows.
 static void read_panel_signals(recipe_context *c, const tree_node *node, void *into)
 {
     recipe_panel *p = into;
@@ -27,21 +49,18 @@ static void read_panel_signals(recipe_context *c, const tree_node *node, void *i
     }
 
     for (const tree_node *item = node->first; item != NULL; item = item->next) {
-        const char *name = node_is_scalar(item) ? item->text : "";
-        int index = signal_find(name);
-
         // known, with room, and of the panel's unit
-        if (index <= 0) {
-            report_node(&c->reader, item,
-                        "there is no signal '%.60s', did you mean '%s'?", name,
-                        nearest_signal(name));
-        } else if (p->signal_count == TRACE_SIGNALS) {
+        const int index = find_signal(c, item);
+        if (index < 0) {
+            continue;
+        }
+        if (p->signal_count == TRACE_SIGNALS) {
             report_node(&c->reader, item, "a panel shows at most %d signals",
                         TRACE_SIGNALS);
         } else if (has_other_unit(p, index)) {
             report_node(&c->reader, item,
                         "'%s' has another unit than '%s', expected a panel of its own",
-                        name, p->signals[0]);
+                        item->text, p->signals[0]);
         } else {
             p->signals[p->signal_count++] = signal_table[index].name;
         }
@@ -121,6 +140,11 @@ static void complete_panel(recipe_context *c, const tree_node *node, void *into)
         report_node(&c->reader, node,
                     "a panel of runs or data needs 'signals', such as [force]");
     }
+    const int curves = p->signal_count * p->source_count;
+    if (curves > PANEL_SERIES) {
+        report_node(&c->reader, node, "a panel has %d curves, expected at most %d",
+                    curves, PANEL_SERIES);
+    }
     if (p->signal_count > 1 && p->compared) {
         report_node(&c->reader, node, "a difference is that of one signal");
     }
@@ -140,6 +164,34 @@ static const recipe_form notes = {
     .complete = check_note,
 };
 
+static const recipe_form levels = {
+    .what = "a level",
+    .example = "at: 2",
+    .keys = {FIELD_KEY("at", VALUE_NUMBER, figure_level, y),
+             FIELD_KEY("label", VALUE_TEXT, figure_level, label)},
+    .holder = "a panel",
+    .things = "levels",
+    .size = sizeof(figure_level),
+    .most = RECIPE_LEVELS,
+};
+
+// The run that a band lies round.
+static void read_round(recipe_context *c, const tree_node *node, void *into)
+{
+    recipe_panel *p = into;
+    p->round = recipe_find_source(c, node);
+    if (p->round >= 0 && c->recipe->sources[p->round].kind != SOURCE_RUN) {
+        report_node(&c->reader, node, "'%s' is no run", node->text);
+    }
+}
+
+static const recipe_form band = {
+    .what = "a band",
+    .example = "tolerance: 0.1",
+    .keys = {{"round", .read = read_round},
+             FIELD_KEY("tolerance", VALUE_NUMBER, recipe_panel, tolerance)},
+};
+
 static const recipe_form panels = {
     .what = "a panel",
     .example = "signals: [force]",
@@ -152,6 +204,9 @@ static const recipe_form panels = {
               .low = DBL_MIN, .high = 20, .expected = "a number above 0, up to 20"},
              FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, shown.y.with_zero),
              FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
+             FIELD_KEY("impulses", VALUE_TRUTH, recipe_panel, impulses),
+             ITEMS_KEY("levels", &levels, recipe_panel, levels, shown.level_count),
+             {"band", VALUE_MAP, .form = &band},
              PAIR_KEY("range", recipe_panel, shown.y.low, shown.y.high),
              PAIR_KEY("inset", recipe_panel, shown.zoom_from, shown.zoom_to),
              ITEMS_KEY("notes", &notes, recipe_panel, notes, shown.note_count)},
@@ -160,12 +215,26 @@ static const recipe_form panels = {
     .size = sizeof(recipe_panel),
     .most = FIGURE_PANELS,
     .complete = complete_panel,
+    .blank = &(const recipe_panel){.round = -1},
 };
+
+// The signal across the panels.
+static void read_over(recipe_context *c, const tree_node *node, void *into)
+{
+    recipe *r = into;
+    const int index = find_signal(c, node);
+    if (index > 0) {
+        r->over = index;
+    }
+}
 
 static const recipe_form horizontal = {
     .what = "x",
     .example = "range: [0, 1]",
     .keys = {PAIR_KEY("range", recipe, shown.x.low, shown.x.high),
+             {"signal", .read = read_over},
+             FIELD_KEY("spectrum", VALUE_TRUTH, recipe, spectrum),
+             PAIR_KEY("time", recipe, from, to),
              FIELD_KEY("label", VALUE_TEXT, recipe, shown.x.label),
              FIELD_KEY("unit", VALUE_TEXT, recipe, shown.x.unit),
              FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic)},
@@ -192,6 +261,8 @@ static const recipe_form whole = {
              ITEMS_KEY("panels", &panels, recipe, panels, shown.panel_count),
              FIELD_KEY("title", VALUE_TEXT, recipe, shown.title),
              FIELD_KEY("caption", VALUE_TEXT, recipe, shown.caption),
+             {"width", VALUE_NUMBER, offsetof(recipe, shown.width), .low = 20,
+              .high = 2000, .unit = "mm", .expected = "a width from 20 to 2000 mm"},
              {"x", VALUE_MAP, .form = &horizontal},
              {"columns", VALUE_NUMBER, offsetof(recipe, columns), .low = 1, .high = 8,
               .whole = true, .expected = "a whole number from 1 to 8"},
@@ -207,7 +278,11 @@ bool recipe_read(recipe *r, const char *path, const char *text, size_t length,
 {
     fault f = {0};
     recipe_context c = {.reader = {.path = path}, .recipe = r};
-    *r = (recipe){.columns = 1, .contact = true};
+    *r = (recipe){.columns = 1,
+                  .contact = true,
+                  .over = SIGNAL_INDEX(time),
+                  .from = -HUGE_VAL,
+                  .to = HUGE_VAL};
     r->plot = owned_figure_create(0, "%s", path);
 
     // its text as a tree, and the tree by its form
@@ -224,6 +299,13 @@ bool recipe_read(recipe *r, const char *path, const char *text, size_t length,
     }
     if (r->source_count == 0 && c.reader.faults == 0) {
         report_node(&c.reader, root, "there are no runs, data or tables here");
+    }
+    const bool by_time = r->over == SIGNAL_INDEX(time) && !r->spectrum;
+    if (!by_time && r->over != SIGNAL_INDEX(time) && r->spectrum) {
+        report_node(&c.reader, root, "x is a signal or the frequency of a spectrum");
+    }
+    if (!(r->from < r->to)) {
+        report_node(&c.reader, root, "time ends before it begins");
     }
     tree_free(root);
 

@@ -1,4 +1,5 @@
 // Sources of a recipe's curves: runs, measured data, tables.
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -17,6 +18,11 @@ bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char
     report_node(&c->reader, node, "there is no parameter '%.60s', did you mean '%s'?",
                 path, text_or(near.best, "motor.voltage"));
     return false;
+}
+
+bool recipe_is_text(const recipe_source *s)
+{
+    return s->scenario != NULL && strchr(s->scenario, '\n') != NULL;
 }
 
 // What is changed of a run's scenario.
@@ -50,19 +56,64 @@ static void read_changes(recipe_context *c, const tree_node *node, void *into)
     }
 }
 
+// A number of a table, or nothing where there is none.
+static double read_cell(recipe_context *c, const tree_node *node)
+{
+    double value = (double)NAN;
+    if (node_is_scalar(node) && strcmp(node->text, "null") == 0) {
+        return value;
+    }
+    reader_quantity(&c->reader, node, "a number of a row", "", &value);
+    return value;
+}
+
+// Rows of a table that stand in the recipe itself.
+static void read_rows(recipe_context *c, const tree_node *node, void *into)
+{
+    recipe_source *s = into;
+    const size_t columns = s->z != NULL ? 3 : 2;
+    size_t count = 0;
+    const tree_node *row = recipe_first(c, node, "rows");
+    for (const tree_node *n = row; n != NULL; n = n->next) {
+        count++;
+    }
+    for (size_t k = 0; k < columns; k++) {
+        s->columns[k] = owned_figure_numbers(c->recipe->plot, count);
+    }
+    for (; row != NULL; row = row->next) {
+        size_t k = 0;
+        const tree_node *cell = recipe_first(c, row, "a row");
+        for (; cell != NULL && k < columns; cell = cell->next) {
+            s->columns[k++][s->count] = read_cell(c, cell);
+        }
+        if (k < columns || cell != NULL) {
+            report_node(&c->reader, row, "a row has another number of columns than %zu",
+                        columns);
+            return;
+        }
+        s->count++;
+    }
+}
+
 // What every source has, and what each kind needs: what is missing shows only at its end.
 static void complete_source(recipe_context *c, const tree_node *node, void *into)
 {
     recipe_source *s = into;
     s->at = (place){node->line, node->column};
-    s->rank = (int)(s - c->recipe->sources) + 1;
+    s->rank = s->look > 0 ? (int)s->look : (int)(s - c->recipe->sources) + 1;
     const char *needed = s->file, *key = "file";
     if (s->kind == SOURCE_RUN) {
         needed = s->scenario;
         key = "scenario";
     }
-    if (needed == NULL) {
+    if (needed == NULL && s->columns[0] == NULL) {
         report_node(&c->reader, node, "there is no '%s' here", key);
+    }
+    if (s->file != NULL && s->columns[0] != NULL) {
+        report_node(&c->reader, node, "a table has a 'file' or 'rows', not both");
+    }
+    if (recipe_is_text(s) && s->name == NULL) {
+        report_node(&c->reader, node, "a run with its scenario's text needs 'name'");
     }
     if (s->kind == SOURCE_TABLE && (s->x == NULL || s->y == NULL)) {
         report_node(&c->reader, node,
@@ -99,6 +150,8 @@ const recipe_form recipe_runs = {
     .keys = {FIELD_KEY("scenario", VALUE_TEXT, recipe_source, scenario),
              FIELD_KEY("name", VALUE_TEXT, recipe_source, name),
              FIELD_KEY("label", VALUE_TEXT, recipe_source, label),
+             {"look", VALUE_NUMBER, offsetof(recipe_source, look), .low = 1, .high = 48,
+              .whole = true, .expected = "a whole number from 1 to 48"},
              {"set", .read = read_changes}},
     .holder = "a recipe",
     .things = "runs, data and tables",
@@ -132,7 +185,8 @@ const recipe_form recipe_tables = {
              FIELD_KEY("label", VALUE_TEXT, recipe_source, label),
              FIELD_KEY("x", VALUE_TEXT, recipe_source, x),
              FIELD_KEY("y", VALUE_TEXT, recipe_source, y),
-             FIELD_KEY("z", VALUE_TEXT, recipe_source, z)},
+             FIELD_KEY("z", VALUE_TEXT, recipe_source, z),
+             {"rows", .read = read_rows}},
     .holder = "a recipe",
     .things = "runs, data and tables",
     .size = sizeof(recipe_source),

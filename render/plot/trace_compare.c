@@ -267,8 +267,7 @@ static void add_points(const comparison_figure *c, int panel, const trace_panel 
     }
 }
 
-// Adds the impulses of a run in its colour to those that a panel has.
-static void add_impulses(owned_figure *o, figure_panel *panel, const trace_run *run)
+void trace_add_impulses(owned_figure *o, figure_panel *panel, const trace_run *run)
 {
     int count = 0;
     const figure_impulse *own = trace_impulses(&run->result->trace, &count, o);
@@ -323,7 +322,7 @@ static void describe_panel(const comparison_figure *c, int panel, int signal, in
         const trace_run *run = &c->of.runs[i];
         add_curve(c, panel, run, run->rank, index);
         if (from->impulses) {
-            add_impulses(o, p, run);
+            trace_add_impulses(o, p, run);
         }
     }
     add_points(c, panel, from);

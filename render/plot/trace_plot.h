@@ -57,6 +57,10 @@ char *trace_symbol(const scenario *s, int index);
 // made for it, and for the following, is kept by the figure.
 figure_series trace_series(const trace_run *run, int index, owned_figure *o);
 
+// A signal of a run over another one, both recorded or derived, between two instants [s].
+figure_series trace_series_over(const trace_run *run, int index, int over, double from,
+                                double to, owned_figure *o);
+
 // The value of a signal at an instant of a run, on a side of an event there (trace_side),
 // interpolated linearly between rows; NaN outside the run.
 double trace_value(const trace *t, int index, double time, size_t side);
@@ -167,3 +171,6 @@ void trace_mark_events(owned_figure *o, const trace_run *run);
 
 // The impulses of all impacts, kept by the figure.
 figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o);
+
+// Adds the impulses of a run in its colour to those that a panel has: trace_compare.c
+void trace_add_impulses(owned_figure *o, figure_panel *panel, const trace_run *run);

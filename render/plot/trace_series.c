@@ -212,12 +212,34 @@ static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
     s->stride = 0;
 }
 
+figure_series trace_series_over(const trace_run *run, int index, int over, double from,
+                                double to, owned_figure *o)
+{
+    const trace *rows = &run->result->trace;
+    const signal_info *signal = &signal_table[index];
+    figure_series s = {signal->name, .colour = signal->colour, .style = signal->style};
+    double *x = owned_figure_numbers(o, rows->row_count);
+    double *y = owned_figure_numbers(o, rows->row_count);
+    for (size_t i = 0; i < rows->row_count; i++) {
+        const sample *row = &rows->rows[i];
+        if (row->time >= from && row->time <= to) {
+            x[s.count] = signal_value(row, over);
+            y[s.count++] = signal_value(row, index);
+        }
+    }
+    s.x = x;
+    s.y = y;
+    return s;
+}
+
 // The series of a signal. It points into the trace's rows; only the force is copied, with
 // its peaks.
 figure_series trace_series(const trace_run *run, int index, owned_figure *o)
 {
-    assert(index >= 0 && index < signal_count);
     const trace *rows = &run->result->trace;
+    if (signal_is_derived(index)) {
+        return trace_series_over(run, index, SIGNAL_INDEX(time), -HUGE_VAL, HUGE_VAL, o);
+    }
     const signal_info *signal = &signal_table[index];
     const char *base = (const char *)rows->rows;
     figure_series s = {signal->name, .count = rows->row_count, .stride = sizeof(sample),

@@ -118,27 +118,25 @@ action session_input_action(const session_input *in)
 
 enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
 
-// Makes the scenario with the inputs in effect. It owns its list of actions; all else is
-// borrowed from the session's base.
-static status build_effective(const session *s, scenario *to, fault *f)
+status session_scenario(const scenario *base, const session_input *inputs, int count,
+                        scenario *to, fault *f)
 {
     // the base without its script
-    *to = s->base;
+    *to = *base;
     to->expectation_count = 0;
     to->action_count = 0;
-    to->actions =
-        calloc((size_t)(s->base.action_count + s->input_count) + 1, sizeof *to->actions);
+    to->actions = calloc((size_t)(base->action_count + count) + 1, sizeof *to->actions);
     if (to->actions == NULL) {
         return fault_no_memory(f);
     }
 
     // the script's actions, then the inputs: an input comes after the script's actions of
     // the same instant
-    for (int i = 0; i < s->base.action_count; i++) {
-        scenario_insert_action(to, s->base.actions[i]);
+    for (int i = 0; i < base->action_count; i++) {
+        scenario_insert_action(to, base->actions[i]);
     }
-    for (int i = 0; i < s->input_count; i++) {
-        const session_input *in = &s->inputs[i];
+    for (int i = 0; i < count; i++) {
+        const session_input *in = &inputs[i];
         const action a = session_input_action(in);
         if (in->kind == SESSION_INPUT_START) {
             TRY(action_give(&a, &to->parameters, f));
@@ -300,7 +298,7 @@ status session_compute(session *s, fault *f)
 {
     // the scenario, whose run has to fit into memory
     scenario effective;
-    status code = build_effective(s, &effective, f);
+    status code = session_scenario(&s->base, s->inputs, s->input_count, &effective, f);
     if (code == STATUS_OK) {
         code = check_memory(&effective.parameters, f);
     }

@@ -152,6 +152,11 @@ status session_change_input(session *s, int index, const char *text, fault *f);
 // Takes inputs[index] out; it is the next that session_redo puts in, at the end.
 status session_drop_input(session *s, int index, fault *f);
 
+// Makes the scenario of a base with inputs. It owns its list of actions, to be freed also
+// on failure; all else is borrowed from the base.
+status session_scenario(const scenario *base, const session_input *inputs, int count,
+                        scenario *to, fault *f);
+
 // The action that an input is, from its instant on; and what a text gave the input's
 // parameter in p becomes its value.
 action session_input_action(const session_input *in);

@@ -1,6 +1,7 @@
 #include "src/tables/signals.h"
 
 #include <assert.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -110,20 +111,24 @@ static const char *unit_of(const expression *e)
     return "";
 }
 
-int signal_derive(int place, const char *text, fault *f)
+// The name of an expression: its text without blanks.
+static void name_expression(const char *text, char name[DERIVED_NAME])
 {
-    assert(place >= 0 && place < DERIVED_SIGNALS);
-
-    // its name is the text without blanks
-    expression e;
-    char name[DERIVED_NAME];
     size_t length = 0;
-    for (const char *c = text; *c != '\0' && length + 1 < sizeof name; c++) {
+    for (const char *c = text; *c != '\0' && length + 1 < DERIVED_NAME; c++) {
         if (!is_blank(*c)) {
             name[length++] = *c;
         }
     }
     name[length] = '\0';
+}
+
+int signal_derive(int place, const char *text, fault *f)
+{
+    assert(place >= 0 && place < DERIVED_SIGNALS);
+    expression e;
+    char name[DERIVED_NAME];
+    name_expression(text, name);
     if (expression_read(&e, text, find_recorded, NULL, f) != STATUS_OK) {
         return -1;
     }
@@ -146,6 +151,28 @@ int signal_derive(int place, const char *text, fault *f)
 bool signal_is_derived(int index)
 {
     return index >= SIGNALS_AT_MOST;
+}
+
+int signal_of_text(const char *text, fault *f)
+{
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    char name[DERIVED_NAME];
+    name_expression(text, name);
+    pthread_mutex_lock(&lock);
+    int index = signal_find_any(name), place = 0;
+
+    // the first place that no expression has had
+    while (place < DERIVED_SIGNALS && derived[place].name[0] != '\0') {
+        place++;
+    }
+    if (index < 0 && place == DERIVED_SIGNALS) {
+        fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s': there are %d other expressions", text,
+                  DERIVED_SIGNALS);
+    } else if (index < 0) {
+        index = signal_derive(place, text, f);
+    }
+    pthread_mutex_unlock(&lock);
+    return index;
 }
 
 // --- values ----------------------------------------------------------------------------

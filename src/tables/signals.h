@@ -176,6 +176,9 @@ enum { SIGNALS_AT_MOST = sizeof(sample) / sizeof(double), DERIVED_SIGNALS = 16 }
 // the expression cannot be read. Not for use beside a thread that reads signals.
 int signal_derive(int place, const char *text, fault *f);
 bool signal_is_derived(int index);
+// The index of a recorded signal or of an expression, which is derived in a place that
+// none has had unless it is there already; -1 with a sentence. Threads may call it.
+int signal_of_text(const char *text, fault *f);
 
 // Index of a recorded signal by name, or -1; and of derived ones, too.
 int signal_find(const char *name);

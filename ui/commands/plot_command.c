@@ -68,6 +68,12 @@ static int plot_recipe(const arguments *a)
         return ended;
     }
 
+    // without options that change it the picture remembers its recipe alone
+    g_autofree char *made_by = recipe_command(recipe);
+    if (strstr(a->command_line, " -") == NULL) {
+        o.command = made_by;
+    }
+
     // where the picture goes
     g_autofree char *path = g_strdup(a->plot);
     if (path == NULL) {

@@ -90,6 +90,21 @@ bool explorer_keys(explorer *ex, const char *text, fault *f);
 // Handles an event of the mouse.
 void explorer_point(explorer *ex, pointer_event e);
 
+// --- figures ---------------------------------------------------------------------------
+// What the lab shows as recipes of figures (docs/reference/recipes.md), from which its
+// pictures are drawn, too: the panes over time, then each pane over another axis, and the
+// sweep that stands at the side.
+
+// How many there are.
+int shown_figure_count(const explorer_model *model, const explorer_view *view);
+
+// Writes the recipe of one of them for a picture in `folder`, `width` wide [mm; 0: the
+// usual one]. Errors of writing stay in the stream; STATUS_BAD_ARGUMENT or
+// STATUS_NO_MEMORY.
+status shown_figure_write(const explorer_model *model, const explorer_view *view,
+                          int index, const char *folder, double width, FILE *stream,
+                          fault *f);
+
 // --- completion ------------------------------------------------------------------------
 
 // Completes the prompt's last word as far as all candidates agree and lists them if there

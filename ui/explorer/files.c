@@ -4,27 +4,17 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "render/plot/trace_plot.h"
+#include "render/figures/figures.h"
 #include "render/scene/scene.h"
 #include "src/base/input_file.h"
+#include "src/base/numbers.h"
 #include "src/base/result_places.h"
+#include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
 #include "src/run/export.h"
 #include "src/scenario/outside.h"
-#include "ui/explorer/panels/panel.h"
-
-static status write_figure(const explorer_model *model, const char *path, fault *f)
-{
-    const session *s = &model->session;
-    figure_mark notes[NOTES];
-    for (int i = 0; i < model->note_count; i++) {
-        notes[i] =
-            (figure_mark){.x = model->notes[i].time, .label = model->notes[i].text};
-    }
-    return plot_run(&s->effective, &s->run, s->has_other ? &s->other : NULL, notes,
-                    model->note_count, path, f);
-}
+#include "ui/explorer/explorer.h"
 
 // The screen as text, drawn as large as it was last, without a place for the mouse.
 static void write_screen(explorer_model *model, explorer_view *view,
@@ -117,6 +107,13 @@ static void name_of_run(const session *s, char *stem, size_t size)
     }
 }
 
+// Whether a file of a name is there, or a recipe beside it.
+static bool has_file(const char *name)
+{
+    g_autofree char *recipe = artwork_beside(name, ".yaml");
+    return exists(name) || exists(recipe);
+}
+
 // Asks for a name and proposes the first one of the run that no file has.
 static void propose_file_name(const explorer_model *model, explorer_input *input,
                               const char *command, const char *ending)
@@ -124,7 +121,7 @@ static void propose_file_name(const explorer_model *model, explorer_input *input
     char stem[100], name[LINE_TEXT / 2];
     name_of_run(&model->session, stem, sizeof stem);
     snprintf(name, sizeof name, "%s%s", stem, ending);
-    for (int i = 2; exists(name) && i < 10000; i++) {
+    for (int i = 2; has_file(name) && i < 10000; i++) {
         snprintf(name, sizeof name, "%s-%d%s", stem, i, ending);
     }
     prompt_open(&input->prompt, name, "%s ", command);
@@ -153,10 +150,146 @@ static bool is_free(const explorer_model *model, explorer_input *input, const ch
     return true;
 }
 
-// Writes what the name's ending asks for; a file that is there is replaced.
-static bool save_over(explorer_model *model, explorer_view *view, explorer_input *input,
-                      const char *name)
+// --- figures ---------------------------------------------------------------------------
+
+// The name of one of several pictures: FIGURE.png, FIGURE-2.png and so on.
+static char *picture_name(const char *name, int index)
 {
+    const int stem = (int)(picture_ending(name) - name);
+    if (index == 0) {
+        return g_strdup(name);
+    }
+    return text_printf("%.*s-%d%s", stem, name, index + 1, name + stem);
+}
+
+// Cuts the width off "FIGURE.png 85" [mm]; 0: there is none.
+static double cut_width(char *name)
+{
+    char *blank = strrchr(name, ' ');
+    const char *rest;
+    double width = 0;
+    if (blank == NULL || !decimal_read(blank + 1, &width, &rest) ||
+        (*rest != '\0' && strcmp(rest, "mm") != 0)) {
+        return 0;
+    }
+    *blank = '\0';
+    if (content_of_name(name) != FILE_FIGURE) {
+        *blank = ' ';
+        return 0;
+    }
+    return width;
+}
+
+// Where the recipe of a picture goes: FIGURE.yaml, or where that is another file's name,
+// FIGURE.png.yaml.
+static char *recipe_name(const char *name, bool over)
+{
+    g_autofree char *usual = artwork_beside(name, ".yaml");
+    if (!exists(usual) || (over && recipe_is(usual))) {
+        return g_steal_pointer(&usual);
+    }
+    return g_strconcat(name, ".yaml", NULL);
+}
+
+// Draws one of the pictures from its recipe, and writes that beside it.
+static status write_figure(const explorer_model *model, const explorer_view *view,
+                           int index, const char *name, const char *path, double width,
+                           fault *f)
+{
+    g_autofree char *folder = g_path_get_dirname(name), *command = recipe_command(path);
+    text_stream recipe;
+    size_t length;
+    if (!text_stream_open(&recipe)) {
+        return fault_no_memory(f);
+    }
+    status code = shown_figure_write(model, view, index, folder, width, recipe.stream, f);
+    char *text = text_stream_close(&recipe, &length);
+    if (code != STATUS_OK || text == NULL) {
+        free(text);
+        return code != STATUS_OK ? code : fault_no_memory(f);
+    }
+
+    // the picture comes from the text that plot will read
+    artwork drawn = {0};
+    const figure_options options = {.command = command};
+    code = recipe_open_text(text, length, path, &options, keep_first_fault, f, &drawn, f);
+    if (code == STATUS_OK) {
+        code = artwork_publish(&drawn, &options, name, false, f);
+        artwork_finish(&drawn);
+    }
+    whole_file file;
+    if (code == STATUS_OK) {
+        code = whole_file_open(&file, path, f);
+    }
+    if (code == STATUS_OK) {
+        fputs(text, file.stream);
+        code = whole_file_commit(&file, f);
+    }
+    free(text);
+    return code;
+}
+
+// Whether the places of a picture and its recipe may be written to.
+static bool figure_is_free(const explorer_model *model, explorer_input *input,
+                           const char *name, bool over)
+{
+    g_autofree char *recipe = recipe_name(name, over);
+    if (!over && exists(name)) {
+        return tell_file(input, false, name);
+    }
+    if (exists(recipe) && !(over && recipe_is(recipe))) {
+        return tell_file(input, false, recipe);
+    }
+    return is_free(model, input, name) && is_free(model, input, recipe);
+}
+
+// Saves what is shown: each of its pictures with its recipe.
+static bool save_figures(const explorer_model *model, const explorer_view *view,
+                         explorer_input *input, const char *name, double width, bool over)
+{
+    const int count = shown_figure_count(model, view);
+    g_autofree char *recipe = NULL;
+    if (count == 0) {
+        return act_refuse(input, "no pane of curves is shown, 1 to 9 show them");
+    }
+    for (int i = 0; i < count; i++) {
+        g_autofree char *one = picture_name(name, i);
+        if (!figure_is_free(model, input, one, over)) {
+            return false;
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        g_autofree char *one = picture_name(name, i), *path = recipe_name(one, over);
+        if (!act_succeeded(input, write_figure(model, view, i, one, path, width,
+                                               &input->fault))) {
+            return false;
+        }
+        if (i == 0) {
+            recipe = g_steal_pointer(&path);
+        }
+    }
+
+    // where it is, and how it is made again
+    g_autofree char *path = g_canonicalize_filename(name, NULL);
+    if (count == 1) {
+        return act_tell(input, "saved %.400s; impactlab plot %.200s draws it again", path,
+                        recipe);
+    }
+    return act_tell(input,
+                    "saved %d pictures from %.400s on, each with its recipe (.yaml)",
+                    count, path);
+}
+
+// --- saving ----------------------------------------------------------------------------
+
+// Writes what the name's ending asks for; `over`: in the place of what is there.
+static bool save_over(explorer_model *model, explorer_view *view, explorer_input *input,
+                      const char *argument, bool over)
+{
+    char name[LINE_TEXT];
+    snprintf(name, sizeof name, "%s", argument);
+    const double width = cut_width(name);
+
     // a scenario and a screen may be of a part of a run
     const file_content content = content_of_name(name);
     if (content != FILE_SCENARIO && content != FILE_SCREEN &&
@@ -167,14 +300,14 @@ static bool save_over(explorer_model *model, explorer_view *view, explorer_input
         return act_refuse(
             input, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt");
     }
+    if (content == FILE_FIGURE) {
+        return save_figures(model, view, input, name, width, over);
+    }
+    if (!over && exists(name)) {
+        return tell_file(input, false, name);
+    }
     if (!is_free(model, input, name)) {
         return false;
-    }
-
-    // a figure opens its file itself
-    if (content == FILE_FIGURE) {
-        return act_succeeded(input, write_figure(model, name, &input->fault)) &&
-               tell_file(input, true, name);
     }
     whole_file file;
     if (!act_succeeded(input, whole_file_open(&file, name, &input->fault))) {
@@ -204,13 +337,10 @@ bool act_save(explorer_model *model, explorer_view *view, explorer_input *input,
     if (argument[0] == '\0') {
         propose_file_name(model, input, "save", ".png");
         return act_tell(
-            input, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
-                   "gives this run; .txt: the screen");
+            input, ".png .pdf .svg: what is shown, 'x.png 85' in mm; .csv: the rows; "
+                   ".yaml: a scenario that gives this run; .txt: the screen");
     }
-    if (exists(argument)) {
-        return tell_file(input, false, argument);
-    }
-    return save_over(model, view, input, argument);
+    return save_over(model, view, input, argument, false);
 }
 
 bool act_save_now(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -219,7 +349,7 @@ bool act_save_now(explorer_model *model, explorer_view *view, explorer_input *in
     if (argument[0] == '\0') {
         return act_refuse(input, "save! takes the file that it is to replace");
     }
-    return save_over(model, view, input, argument);
+    return save_over(model, view, input, argument, true);
 }
 
 // The arm in space at the cursor's instant.
@@ -244,12 +374,12 @@ bool act_scene(const explorer_model *model, explorer_input *input, const char *a
     }
 
     // the cursor's instant
-    const scene_picture picture = {.scenario = &s->effective,
-                                   .result = &s->run,
-                                   .options = options,
-                                   .times = &s->now,
-                                   .count = 1};
-    return act_succeeded(input, scene_write(&picture, argument, &input->fault)) &&
+    const scene_picture shot = {.scenario = &s->effective,
+                                .result = &s->run,
+                                .options = options,
+                                .times = &s->now,
+                                .count = 1};
+    return act_succeeded(input, scene_write(&shot, argument, &input->fault)) &&
            tell_file(input, true, argument);
 }
 

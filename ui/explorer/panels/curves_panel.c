@@ -373,48 +373,14 @@ static void draw_run_curves(const explorer_model *model, const explorer_view *vi
     }
 }
 
-// The setpoints and limits of what a pane shows, as they are at the cursor.
+// The setpoints and limits of what a pane shows.
 static void draw_levels(const explorer_model *model, const plot_frame *f, screen *s,
                         const pane *p)
 {
-    const struct {
-        int signal, parameter;
-        bool both_ways;
-    } levels[] = {{SIGNAL_INDEX(force), PARAMETER_INDEX(control.force_limit), false},
-                  {SIGNAL_INDEX(command), PARAMETER_INDEX(motor.voltage_limit), true},
-                  {SIGNAL_INDEX(hub_angle), PARAMETER_INDEX(wall.angle), false},
-                  {SIGNAL_INDEX(hub_velocity), PARAMETER_INDEX(control.speed_limit),
-                   true}};
-
-    // the bound that was asked for, of its signal
-    for (int k = 0; k < p->count; k++) {
-        if (p->signals[k] == model->limit.signal) {
-            plot_frame_level(f, s, model->limit.bound, "limit");
-        }
-    }
-
-    // what the law is to hold, and the band in which it has settled
-    if (p->signals[0] == SIGNAL_INDEX(force)) {
-        const value_range band = view_force_band(model);
-        plot_frame_level(f, s, (band.low + band.high) / 2, "command");
-        plot_frame_level(f, s, band.low, "-5 %");
-        plot_frame_level(f, s, band.high, "+5 %");
-    }
-
-    // those that belong to the first signal of the pane and have a value in the run
-    const parameters now = model_parameters(model);
-    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
-        const int parameter = levels[i].parameter;
-        if (p->signals[0] != levels[i].signal ||
-            model_inert_reason(model, parameter) != NULL) {
-            continue;
-        }
-        const char *name = strchr(parameter_table[parameter].path, '.') + 1;
-        const double value = parameter_get(&now, parameter);
-        plot_frame_level(f, s, value, name);
-        if (levels[i].both_ways) {
-            plot_frame_level(f, s, -value, name);
-        }
+    shown_level levels[SHOWN_LEVELS];
+    const int count = model_levels(model, p, levels);
+    for (int i = 0; i < count; i++) {
+        plot_frame_level(f, s, levels[i].value, levels[i].name);
     }
 }
 

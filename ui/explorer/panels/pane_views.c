@@ -4,10 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "src/base/fourier.h"
-
-enum { SERIES = 1024 };               // values of which a spectrum is computed
-enum { SPECTRUM_LINES = SERIES / 2 }; // of a spectrum
+#include "src/run/spectrum.h"
 
 // A plane of two ranges on a canvas.
 typedef struct plane {
@@ -105,120 +102,42 @@ static bool draw_phase(const explorer_model *model, const explorer_view *view, s
 
 // --- a spectrum ------------------------------------------------------------------------
 
-// The value of a signal at an instant from row r on, a share of the way to the next row
-// if there is one.
-static double value_between(const trace *t, int signal, size_t r, double time)
-{
-    const double value = signal_value(&t->rows[r], signal);
-    if (r + 1 >= t->row_count || t->rows[r + 1].time <= t->rows[r].time) {
-        return value;
-    }
-    const double share =
-        (time - t->rows[r].time) / (t->rows[r + 1].time - t->rows[r].time);
-    return value + share * (signal_value(&t->rows[r + 1], signal) - value);
-}
-
-// A signal at even instants, straight between rows; what has no value counts as 0.
-static void sample_evenly(const trace *t, int signal, double from, double to,
-                          double *series)
-{
-    // instants and rows go forward together, so the row is found in one walk
-    size_t r = trace_row_at(t, from);
-    for (int i = 0; i < SERIES; i++) {
-        const double time = from + (to - from) * i / SERIES;
-        while (r + 1 < t->row_count && t->rows[r + 1].time <= time) {
-            r++;
-        }
-        const double value = value_between(t, signal, r, time);
-        series[i] = isfinite(value) ? value : 0;
-    }
-}
-
-// The number of lines that hold nearly all of what there is, and a few more. Line 0 is
-// what the window makes of a mean that was taken off, and not of the signal.
-static int lines_that_matter(const double *amplitude)
-{
-    double all = 0, sum = 0;
-    for (int k = 1; k < SPECTRUM_LINES; k++) {
-        all += amplitude[k] * amplitude[k];
-    }
-    int lines = 1;
-    while (lines < SPECTRUM_LINES && sum < 0.99 * all) {
-        sum += amplitude[lines] * amplitude[lines];
-        lines++;
-    }
-    lines += lines / 4 + 8;
-    return lines < SPECTRUM_LINES ? lines : SPECTRUM_LINES;
-}
-
-// Below this share of a signal's largest value, the amplitudes of its spectrum are
-// rounding.
-#define ROUNDING 1e-12
-
-// The largest absolute value.
-static double largest_size(const double *series, int count)
-{
-    double largest = 0;
-    for (int i = 0; i < count; i++) {
-        largest = fmax(largest, fabs(series[i]));
-    }
-    return largest;
-}
-
-// The line with the highest amplitude, 0 if all are 0.
-static int highest_line(const double *amplitude, int lines)
-{
-    int highest = 0;
-    double height = 0;
-    for (int k = 1; k < lines; k++) {
-        if (amplitude[k] > height) {
-            height = amplitude[k];
-            highest = k;
-        }
-    }
-    return highest;
-}
-
 // The amplitudes of the visible part, as far as it has been seen, up to where there is
 // anything.
 static bool draw_spectrum(const explorer_model *model, const explorer_view *view,
                           screen *s, const pane *of, area a, value_range *axis)
 {
-    static double series[SERIES], scratch[2 * SERIES], amplitude[SPECTRUM_LINES];
-    const trace *t = model_run(model, 0).trace;
+    static trace_spectrum of_pane;
     double from, to;
     view_window(model, view, &from, &to);
     to = fmin(to, model->session.seen);
     if (!(to > from)) {
         return false;
     }
-    sample_evenly(t, of->signals[0], from, to, series);
-    fourier_amplitudes(series, SERIES, scratch, amplitude);
+    trace_spectrum_take(model_run(model, 0).trace, of->signals[0], from, to, &of_pane);
 
     // the highest line is named, if there is any
-    const int lines = lines_that_matter(amplitude), peak = highest_line(amplitude, lines);
-    const double highest = peak > 0 ? amplitude[peak] : 0;
-    const bool constant = highest <= ROUNDING * largest_size(series, SERIES);
     value_range heights = {0, 0};
-    if (!constant) {
-        heights.high = highest;
+    if (!of_pane.constant) {
+        heights.high = of_pane.amplitude[of_pane.highest];
     }
     const plane p = {.canvas = {s, a.x, a.y, a.width, a.height},
-                     .x = {0, lines / (to - from)},
+                     .x = {0, of_pane.lines * of_pane.step},
                      .y = value_range_opened(heights)};
     *axis = p.y;
-    if (constant) {
+    if (of_pane.constant) {
         draw_ends(s, a, p.x, "constant, to [Hz]");
         return true;
     }
 
-    for (int k = 2; k < lines; k++) {
-        canvas_line(&p.canvas, dot_x(&p, (k - 1) / (to - from)),
-                    dot_y(&p, amplitude[k - 1]), dot_x(&p, k / (to - from)),
-                    dot_y(&p, amplitude[k]), INK_SERIES_0);
+    for (int k = 2; k < of_pane.lines; k++) {
+        canvas_line(&p.canvas, dot_x(&p, (k - 1) * of_pane.step),
+                    dot_y(&p, of_pane.amplitude[k - 1]), dot_x(&p, k * of_pane.step),
+                    dot_y(&p, of_pane.amplitude[k]), INK_SERIES_0);
     }
     char name[64];
-    snprintf(name, sizeof name, "highest at %.3g Hz, to [Hz]", peak / (to - from));
+    snprintf(name, sizeof name, "highest at %.3g Hz, to [Hz]",
+             of_pane.highest * of_pane.step);
     draw_ends(s, a, p.x, name);
     return true;
 }

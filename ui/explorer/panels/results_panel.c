@@ -127,7 +127,7 @@ static int list_runs(const explorer_model *model, result_run runs[MOST_RUNS])
 {
     const session *s = &model->session;
     const run_list *pins = &model->pinned;
-    const opened_run *o = &model->opened_run;
+    const reference_run *o = &model->opened_run;
     const int baseline = s->has_other ? pins->baseline : -1;
     int count = 0;
     runs[count++] = (result_run){"", &s->run.summary, 1, -1, false};

@@ -155,8 +155,8 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "a step's question: a number, or that of a choice")                                \
     X("", "continue", act_continue(model, input), "y", "",                               \
       "the next step; before it is done: a hint")                                        \
-    X("Files", "save", act_save(model, view, input, argument), "s", "FILE",              \
-      ".png .pdf .svg .csv .yaml .txt")                                                  \
+    X("Files", "save", act_save(model, view, input, argument), "s", "FILE [MM]",         \
+      "what is shown: .png .pdf .svg; .csv .yaml .txt")                                  \
     X("", "save!", act_save_now(model, view, input, argument), "", "FILE",               \
       "the same over a file that is there")                                              \
     X("", "session", act_session(model, view, input, argument), "", "save|open FILE",    \

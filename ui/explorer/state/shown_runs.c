@@ -76,7 +76,7 @@ int model_runs(const explorer_model *model, const pane *p, shown_run runs[SHOWN_
 
     // the present one, that as opened, the pinned ones, the sweep's
     int count = 0;
-    const opened_run *o = &model->opened_run;
+    const reference_run *o = &model->opened_run;
     runs[count++] = (shown_run){SHOWN_PRESENT, 0, &s->run.trace, model_run_id(model)};
     if (o->shown) {
         runs[count++] =
@@ -144,7 +144,7 @@ const char *model_run_name(const explorer_model *model, int index)
 static void find_opened_run_pinned(explorer_model *model)
 {
     const run_list *pins = &model->pinned;
-    opened_run *o = &model->opened_run;
+    reference_run *o = &model->opened_run;
     const unsigned long pins_now = pins->pinned * (PINNED_RUNS + 1) + pins->count + 1;
     if (o->pins_seen == pins_now) {
         return;
@@ -160,18 +160,18 @@ static void find_opened_run_pinned(explorer_model *model)
 
 void model_forget_opened_run(explorer_model *model)
 {
-    opened_run *o = &model->opened_run;
+    reference_run *o = &model->opened_run;
     if (o->kept) {
         run_finish(&o->run);
     }
-    *o = (opened_run){0};
+    *o = (reference_run){0};
 }
 
 // Keeps the present run as the one as opened, if it is that and complete.
 static status keep_opened_run(explorer_model *model, fault *f)
 {
     const session *s = &model->session;
-    opened_run *o = &model->opened_run;
+    reference_run *o = &model->opened_run;
     const unsigned long id = model_run_id(model);
     if (s->input_count > 0 || s->computing != NULL || (o->kept && o->id == id)) {
         return STATUS_OK;
@@ -188,7 +188,7 @@ static status keep_opened_run(explorer_model *model, fault *f)
 status model_follow_reference(explorer_model *model, fault *f)
 {
     session *s = &model->session;
-    opened_run *o = &model->opened_run;
+    reference_run *o = &model->opened_run;
     const run_list *pins = &model->pinned;
     TRY(keep_opened_run(model, f));
     find_opened_run_pinned(model);

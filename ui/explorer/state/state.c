@@ -86,7 +86,7 @@ static status compute_opened_run(explorer_model *model, fault *f)
 {
     const session *s = &model->session;
     const run_origin from = {.base = s->base};
-    opened_run *o = &model->opened_run;
+    reference_run *o = &model->opened_run;
     session plain;
     TRY(session_reopen(&plain, &from, s->patience, f));
     const bool complete = plain.computing == NULL;
@@ -293,6 +293,56 @@ int view_parameter_lines(const explorer_view *view, parameter_line lines[PARAMET
 const char *model_inert_reason(const explorer_model *model, int parameter)
 {
     return effect_none(&model->session.effective, parameter);
+}
+
+int model_levels(const explorer_model *model, const pane *p,
+                 shown_level levels[SHOWN_LEVELS])
+{
+    const struct {
+        int signal, parameter;
+        bool both_ways;
+    } kinds[] = {{SIGNAL_INDEX(force), PARAMETER_INDEX(control.force_limit), false},
+                 {SIGNAL_INDEX(command), PARAMETER_INDEX(motor.voltage_limit), true},
+                 {SIGNAL_INDEX(hub_angle), PARAMETER_INDEX(wall.angle), false},
+                 {SIGNAL_INDEX(hub_velocity), PARAMETER_INDEX(control.speed_limit),
+                  true}};
+    int count = 0;
+
+    // the bound that was asked for, of its signal
+    for (int k = 0; k < p->count; k++) {
+        if (p->signals[k] == model->limit.signal) {
+            levels[count++] = (shown_level){"limit", model->limit.bound, p->signals[k]};
+        }
+    }
+
+    // what the law is to hold, and the band in which it has settled
+    const int first = p->signals[0];
+    if (first == SIGNAL_INDEX(force)) {
+        const value_range band = view_force_band(model);
+        if (isfinite(band.low) && isfinite(band.high)) {
+            const double middle = (band.low + band.high) / 2;
+            levels[count++] = (shown_level){"command", middle, first};
+            levels[count++] = (shown_level){"-5 %", band.low, first};
+            levels[count++] = (shown_level){"+5 %", band.high, first};
+        }
+    }
+
+    // those that belong to the first signal of the pane and have a value in the run
+    const parameters now = model_parameters(model);
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        const int parameter = kinds[i].parameter;
+        if (p->signals[0] != kinds[i].signal ||
+            model_inert_reason(model, parameter) != NULL) {
+            continue;
+        }
+        const char *name = strchr(parameter_table[parameter].path, '.') + 1;
+        const double value = parameter_get(&now, parameter);
+        levels[count++] = (shown_level){name, value, p->signals[0]};
+        if (kinds[i].both_ways) {
+            levels[count++] = (shown_level){name, -value, p->signals[0]};
+        }
+    }
+    return count;
 }
 
 // --- up to date ------------------------------------------------------------------------

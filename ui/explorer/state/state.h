@@ -38,14 +38,14 @@ typedef struct shown_run {
 
 // The run as the scenario was opened, before any change: what a change is held against as
 // long as no run is pinned.
-typedef struct opened_run {
+typedef struct reference_run {
     bool kept;
     bool shown;       // the present run is another one, and no pinned run is this one
     run_result run;   // its rows are shared with the session's
     unsigned long id; // of its rows
     bool pinned;      // a pinned run is this one
     unsigned long pins_seen; // what that was found out from
-} opened_run;
+} reference_run;
 
 // Second cursor.
 typedef struct time_mark {
@@ -87,7 +87,7 @@ typedef struct screen_size {
 // The model: the runs, what was done to them, and what follows from them.
 typedef struct explorer_model {
     session session; // the present run, its changes and the cursor
-    opened_run opened_run;
+    reference_run opened_run;
     unsigned long reference; // the run that session.other is, 0 for none
     run_list pinned;
     lab_sweep sweep;
@@ -223,6 +223,16 @@ void model_forget_opened_run(explorer_model *model);
 const char *model_reference_name(const explorer_model *model);
 // Its place among the looks.
 int model_reference_rank(const explorer_model *model);
+// Setpoints and limits of what a pane shows, as they are at the cursor, and the bound
+// that was asked for; returns how many.
+enum { SHOWN_LEVELS = PANE_SIGNALS + 6 };
+typedef struct shown_level {
+    const char *name;
+    double value;
+    int signal; // at which it is drawn
+} shown_level;
+int model_levels(const explorer_model *model, const pane *p,
+                 shown_level levels[SHOWN_LEVELS]);
 // The parameters at the cursor.
 parameters model_parameters(const explorer_model *model);
 

@@ -1,0 +1,508 @@
+// What the lab shows as recipes of figures.
+#include <glib.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/plot/trace_plot.h"
+#include "src/base/numbers.h"
+#include "src/base/text_stream.h"
+#include "ui/explorer/explorer.h"
+
+// A recipe that is being written.
+typedef struct shown_recipe {
+    const explorer_model *model;
+    const explorer_view *view;
+    const char *folder; // of the picture
+    FILE *stream;
+    shown_run runs[SHOWN_RUNS]; // whose curves it has, measured data apart
+    int run_count;
+    int baseline; // among the runs, -1: none
+    bool data;    // there are measured ones
+} shown_recipe;
+
+// --- which pictures there are ----------------------------------------------------------
+
+// Whether a pane is on the screen.
+static bool is_shown(const explorer_view *view, int index)
+{
+    const pane_set *set = &view->panes;
+    const pane *p = &set->pane[index];
+    return p->shown && p->count > 0 && (!set->alone || index == panes_focused(set));
+}
+
+// The panes of one picture: those over time (number 0), or one that is not (from 1 on);
+// returns how many.
+static int panes_of(const explorer_view *view, int number, int panes[PANES])
+{
+    int count = 0, others = 0;
+    for (int i = 0; i < PANES; i++) {
+        if (!is_shown(view, i)) {
+            continue;
+        }
+        const bool over_time = pane_is_over_time(&view->panes.pane[i]);
+        if (!over_time) {
+            others++;
+        }
+        if ((number == 0 && over_time) || (!over_time && others == number)) {
+            panes[count++] = i;
+        }
+    }
+    return count;
+}
+
+// The pictures of panes that there are: the numbers of panes_of with any.
+static int numbers_of(const explorer_view *view, int numbers[PANES + 1])
+{
+    int panes[PANES], count = 0;
+    for (int number = 0; number <= PANES; number++) {
+        if (panes_of(view, number, panes) > 0) {
+            numbers[count++] = number;
+        }
+    }
+    return count;
+}
+
+int shown_figure_count(const explorer_model *model, const explorer_view *view)
+{
+    int numbers[PANES + 1];
+    const bool sweep = view->side.panel == PANEL_SWEEP && model->sweep.count > 0;
+    return numbers_of(view, numbers) + sweep;
+}
+
+// --- words and numbers -----------------------------------------------------------------
+
+// A text in double quotes.
+static void write_quoted(const shown_recipe *r, const char *before, const char *text)
+{
+    fprintf(r->stream, "%s\"", before);
+    for (; *text != '\0'; text++) {
+        if (strchr("\"\\", *text) != NULL) {
+            fputc('\\', r->stream);
+        }
+        fputc(*text, r->stream);
+    }
+    fputc('"', r->stream);
+}
+
+// The same of a plain text where markup is read.
+static void write_plain(const shown_recipe *r, const char *before, const char *text)
+{
+    g_autofree char *escaped = g_markup_escape_text(text, -1);
+    write_quoted(r, before, escaped);
+}
+
+static void write_value(const shown_recipe *r, const char *before, double value)
+{
+    char text[NUMBER_TEXT];
+    number_format(text, value);
+    fprintf(r->stream, "%s%s", before, isfinite(value) ? text : "null");
+}
+
+static void write_pair(const shown_recipe *r, const char *before, double a, double b)
+{
+    write_value(r, before, a);
+    write_value(r, ", ", b);
+    fputc(']', r->stream);
+}
+
+// --- runs ------------------------------------------------------------------------------
+
+// A scenario's text, a block of lines.
+static void write_scenario_text(const shown_recipe *r, const scenario *s)
+{
+    text_stream text;
+    char *whole = NULL;
+    if (text_stream_open(&text)) {
+        scenario_write(text.stream, s);
+        whole = text_stream_close(&text, NULL);
+    }
+    loss_unless(whole != NULL);
+    fputs("    scenario: |\n", r->stream);
+    for (char *rest = whole, *line; whole != NULL && *rest != '\0';) {
+        line = strsep(&rest, "\n");
+        fprintf(r->stream, "      %s\n", line);
+    }
+    free(whole);
+}
+
+// Whether a scenario is one that ships, as its file has it.
+static bool is_shipped(const scenario *s)
+{
+    char changes[SCENARIO_CHANGES];
+    g_autofree char *file = g_strconcat("/", s->name, ".yaml", NULL);
+    return s->written != NULL && s->file != NULL && strcmp(s->name, s->file) != 0 &&
+           g_str_has_suffix(s->file, file) && scenario_changes(s, changes)[0] == '\0';
+}
+
+// Writes a scenario with changes: its name and values, if that says all, else its text.
+static status write_changed(const shown_recipe *r, const scenario *base,
+                            const session_input *inputs, int count, fault *f)
+{
+    enum { SET_VALUES = 16 };
+    bool plain = is_shipped(base) && count <= SET_VALUES;
+    for (int i = 0; i < count; i++) {
+        plain = plain && inputs[i].kind == SESSION_INPUT_START;
+        for (int k = 0; k < i; k++) {
+            plain = plain && inputs[i].parameter != inputs[k].parameter;
+        }
+    }
+    if (!plain) {
+        scenario changed;
+        const status code = session_scenario(base, inputs, count, &changed, f);
+        if (code == STATUS_OK) {
+            write_scenario_text(r, &changed);
+        }
+        free(changed.actions);
+        return code;
+    }
+
+    // the values as they were given
+    fprintf(r->stream, "    scenario: %s\n", base->name);
+    for (int i = 0; i < count; i++) {
+        fprintf(r->stream, "%s%s", i == 0 ? "    set: {" : ", ",
+                parameter_table[inputs[i].parameter].path);
+        write_quoted(r, ": ", inputs[i].text);
+    }
+    fputs(count > 0 ? "}\n" : "", r->stream);
+    return STATUS_OK;
+}
+
+// A run of a sweep.
+static status write_swept(const shown_recipe *r, int index, fault *f)
+{
+    const lab_sweep *sweep = &r->model->sweep;
+    scenario changed;
+    TRY(sweep_axes_scenario(&sweep->axis, 1, &sweep->runs[index].value,
+                            &r->model->session.effective, &changed, f));
+    write_scenario_text(r, &changed);
+    return STATUS_OK;
+}
+
+// What a run is called.
+static void run_label(const shown_recipe *r, const shown_run *run, char label[RUN_NAME])
+{
+    const lab_sweep *sweep = &r->model->sweep;
+    if (run->kind == SHOWN_SWEPT) {
+        char value[SWEEP_VALUE_TEXT];
+        sweep_axis_format(&sweep->axis, sweep->runs[run->index].value, value,
+                          sizeof value);
+        snprintf(label, RUN_NAME, "%s %s",
+                 strchr(sweep_axis_parameter(&sweep->axis)->path, '.') + 1, value);
+    } else if (run->kind == SHOWN_PINNED) {
+        snprintf(label, RUN_NAME, "%s", r->model->pinned.runs[run->index].name);
+    } else if (run->kind == SHOWN_OPENED) {
+        snprintf(label, RUN_NAME, "%s", AS_OPENED);
+    } else {
+        run_list_describe(&r->model->session, label, RUN_NAME);
+    }
+}
+
+// The runs, then the measured data, named "run 1" and so on and "data".
+static status write_sources(const shown_recipe *r, fault *f)
+{
+    const explorer_model *model = r->model;
+    fputs("runs:\n", r->stream);
+    for (int i = 0; i < r->run_count; i++) {
+        const shown_run *run = &r->runs[i];
+        char label[RUN_NAME];
+        run_label(r, run, label);
+        fprintf(r->stream, "  - name: run %d\n", i + 1);
+        write_quoted(r, "    label: ", label);
+        fputc('\n', r->stream);
+        if (shown_run_rank(run) > 0) {
+            fprintf(r->stream, "    look: %d\n", shown_run_rank(run));
+        }
+        if (run->kind == SHOWN_SWEPT) {
+            TRY(write_swept(r, run->index, f));
+        } else if (run->kind == SHOWN_PINNED) {
+            const run_origin *from = &model->pinned.runs[run->index].from;
+            TRY(write_changed(r, &from->base, from->inputs, from->input_count, f));
+        } else {
+            const session *s = &model->session;
+            const int changes = run->kind == SHOWN_OPENED ? 0 : s->input_count;
+            TRY(write_changed(r, &s->base, s->inputs, changes, f));
+        }
+    }
+    if (!r->data) {
+        return STATUS_OK;
+    }
+
+    // a file beside the picture goes by its name alone
+    g_autofree char *path = g_canonicalize_filename(model->measured_file, NULL);
+    g_autofree char *folder = g_path_get_dirname(path), *leaf = g_path_get_basename(path);
+    g_autofree char *here = g_canonicalize_filename(r->folder, NULL);
+    fputs("data:\n  - {name: data", r->stream);
+    write_quoted(r, ", label: ", leaf);
+    write_quoted(r, ", file: ", strcmp(folder, here) == 0 ? leaf : path);
+    write_value(r, ", shift: ", model->measured_shift);
+    fputs("}\n", r->stream);
+    return STATUS_OK;
+}
+
+// --- panels ----------------------------------------------------------------------------
+
+// The end of a panel: its range, unless that follows from the data.
+static void end_panel(const shown_recipe *r, int pane_index)
+{
+    value_range axis;
+    if (r->view->panes.pane[pane_index].scaling != AXIS_AUTO &&
+        view_pane_axis(r->model, r->view, pane_index, &axis)) {
+        write_pair(r, ", range: [", axis.low, axis.high);
+    }
+    fputs("}\n", r->stream);
+}
+
+// A panel with the difference of a signal between two sources.
+static void write_difference(const shown_recipe *r, int pane_index, int signal,
+                             const char *of, const char *less)
+{
+    fprintf(r->stream, "  - {difference: [%s, %s]", of, less);
+    write_quoted(r, ", signals: [", signal_table[signal].name);
+    fputc(']', r->stream);
+    end_panel(r, pane_index);
+}
+
+// Setpoints, limits and the band of a panel over time.
+static void write_bounds(const shown_recipe *r, const pane *p, int first)
+{
+    shown_level levels[SHOWN_LEVELS];
+    const explorer_model *model = r->model;
+    const int count = model_levels(model, p, levels);
+    const char *before = ", levels: [{at: ";
+    for (int i = 0; i < count; i++) {
+        if (levels[i].signal != first) {
+            continue;
+        }
+        write_value(r, before, levels[i].value);
+        write_plain(r, ", label: ", levels[i].name);
+        fputc('}', r->stream);
+        before = ", {at: ";
+    }
+    fputs(before[2] == '{' ? "]" : "", r->stream);
+    if (model->band.signal == first && r->baseline >= 0) {
+        fprintf(r->stream, ", band: {round: run %d", r->baseline + 1);
+        write_value(r, ", tolerance: ", model->band.bound);
+        fputc('}', r->stream);
+    }
+}
+
+// The signals of a pane that are not hidden, that of the band first; returns how many.
+static int visible_signals(const shown_recipe *r, const pane *p,
+                           int signals[PANE_SIGNALS])
+{
+    int count = 0;
+    for (int k = 0; k < p->count; k++) {
+        if (p->hidden >> k & 1) {
+            continue;
+        }
+        signals[count++] = p->signals[k];
+        if (p->signals[k] == r->model->band.signal) {
+            signals[count - 1] = signals[0];
+            signals[0] = p->signals[k];
+        }
+    }
+    return count;
+}
+
+// The curves of a pane: of one run a panel for each unit, of several one for each signal.
+static void write_curves(const shown_recipe *r, int pane_index, const int *signals,
+                         int count)
+{
+    const bool alone = r->run_count == 1 && !r->data;
+    bool written[PANE_SIGNALS] = {false};
+    for (int k = 0; k < count; k++) {
+        if (written[k]) {
+            continue;
+        }
+        const char *unit = signal_table[signals[k]].unit;
+        write_quoted(r, "  - {signals: [", signal_table[signals[k]].name);
+        for (int i = k + 1; i < count && alone; i++) {
+            if (strcmp(signal_table[signals[i]].unit, unit) == 0) {
+                write_quoted(r, ", ", signal_table[signals[i]].name);
+                written[i] = true;
+            }
+        }
+        fputc(']', r->stream);
+        if (signals[k] == SIGNAL_INDEX(force)) {
+            fputs(", weight: 2, zero: true, impulses: true", r->stream);
+        }
+        write_bounds(r, &r->view->panes.pane[pane_index], signals[k]);
+        end_panel(r, pane_index);
+    }
+}
+
+// A pane over time as one panel or several.
+static void write_pane(const shown_recipe *r, int pane_index)
+{
+    const pane *p = &r->view->panes.pane[pane_index];
+    int signals[PANE_SIGNALS];
+    const int count = visible_signals(r, p, signals);
+    const bool residual = p->view == VIEW_RESIDUAL;
+    if (!residual && !model_subtracts(r->model)) {
+        write_curves(r, pane_index, signals, count);
+        return;
+    }
+    char baseline[32];
+    snprintf(baseline, sizeof baseline, "run %d", r->baseline + 1);
+    for (int k = 0; k < count; k++) {
+        if (residual && r->data) {
+            write_difference(r, pane_index, signals[k], "data", "run 1");
+        } else if (!residual && !signal_is_derived(signals[k])) {
+            write_difference(r, pane_index, signals[k], "run 1", baseline);
+        }
+    }
+}
+
+// --- the whole -------------------------------------------------------------------------
+
+// Title, caption and width; over time what is shaded, too.
+static void write_texts(const shown_recipe *r, bool over_time, double width)
+{
+    const explorer_model *model = r->model;
+    const session *s = &model->session;
+    char titled[SCENARIO_TITLED];
+    const trace_run run = {&s->effective, &s->run};
+    g_autofree char *caption =
+        over_time ? trace_caption(&run, 1, "contact") : trace_shared(&run, 1);
+    caption[0] = g_ascii_toupper(caption[0]);
+    fputs("# impactlab plot draws this picture of the lab again\n", r->stream);
+    write_quoted(r, "title: ",
+                 r->run_count > 1 ? s->base.title
+                                  : scenario_titled(&s->effective, titled));
+    write_quoted(r, "\ncaption: ", caption);
+    fputc('\n', r->stream);
+    if (width > 0) {
+        write_value(r, "width: ", width);
+        fputc('\n', r->stream);
+    }
+}
+
+// The runs of the panes: all that are shown, but of a pane over another axis only those
+// that it draws.
+static void take_runs(shown_recipe *r, const pane *only)
+{
+    const explorer_model *model = r->model;
+    const int pinned = model->pinned.baseline;
+    const shown_run baseline = {.kind = pinned >= 0 ? SHOWN_PINNED : SHOWN_OPENED,
+                                .index = pinned >= 0 ? pinned : 0};
+    const bool compares = model->session.has_other;
+    shown_run all[SHOWN_RUNS] = {{.kind = SHOWN_PRESENT}};
+    int count = 1;
+    if (only == NULL && !model_subtracts(model)) {
+        count = model_runs(model, NULL, all);
+    } else if (compares && (only == NULL || only->view == VIEW_PHASE)) {
+        all[count++] = baseline;
+    }
+    all[0].kind = SHOWN_PRESENT;
+    r->baseline = -1;
+    for (int i = 0; i < count; i++) {
+        if (all[i].kind == SHOWN_BEFORE || all[i].kind == SHOWN_MEASURED) {
+            continue;
+        }
+        if (compares && all[i].kind == baseline.kind && all[i].index == baseline.index) {
+            r->baseline = r->run_count;
+        }
+        r->runs[r->run_count++] = all[i];
+    }
+    r->data = only == NULL && model->measured.row_count > 0;
+}
+
+// The panes over time, with the notes.
+static status write_over_time(shown_recipe *r, const int *panes, int count, double width,
+                              fault *f)
+{
+    const explorer_model *model = r->model;
+    const time_window *w = &r->view->window;
+    take_runs(r, NULL);
+    write_texts(r, true, width);
+    TRY(write_sources(r, f));
+    fputs("panels:\n", r->stream);
+    for (int i = 0; i < count; i++) {
+        write_pane(r, panes[i]);
+    }
+    if (w->to > w->from) {
+        write_pair(r, "x: {range: [", w->from, w->to);
+        fputs("}\n", r->stream);
+    }
+    for (int i = 0; i < model->note_count; i++) {
+        const note *n = &model->notes[i];
+        write_value(r, i == 0 ? "marks:\n  - {at: " : "  - {at: ", n->time);
+        write_plain(r, ", label: ", n->text);
+        fputs("}\n", r->stream);
+    }
+    return STATUS_OK;
+}
+
+// A pane over another signal, or of a spectrum.
+static status write_over_other(shown_recipe *r, int pane_index, double width, fault *f)
+{
+    const pane *p = &r->view->panes.pane[pane_index];
+    double from, to;
+    view_window(r->model, r->view, &from, &to);
+    take_runs(r, p);
+    write_texts(r, false, width);
+    TRY(write_sources(r, f));
+    write_quoted(r, "panels:\n  - {signals: [", signal_table[p->signals[0]].name);
+    fputs("], weight: 2}\n", r->stream);
+    if (p->view == VIEW_PHASE) {
+        write_quoted(r, "x: {signal: ", signal_table[p->signals[1]].name);
+    } else {
+        fputs("x: {spectrum: true", r->stream);
+        to = fmin(to, r->model->session.seen);
+    }
+    write_pair(r, ", time: [", from, to);
+    fputs("}\n", r->stream);
+    return STATUS_OK;
+}
+
+// The quantity of a sweep over its parameter, or as a map over two.
+static status write_sweep_figure(shown_recipe *r, double width)
+{
+    const lab_sweep *sweep = &r->model->sweep;
+    const bool is_map = lab_sweep_is_map(sweep);
+    const char *metric = summary_table[sweep->metric].key;
+    write_texts(r, false, width);
+    fprintf(r->stream, "tables:\n  - name: sweep\n    x: %s\n    y: %s\n",
+            sweep_axis_parameter(&sweep->axis)->path,
+            is_map ? sweep_axis_parameter(&sweep->second)->path : metric);
+    if (is_map) {
+        fprintf(r->stream, "    z: %s\n", metric);
+    }
+    fputs("    rows:\n", r->stream);
+    for (int i = 0; i < sweep->count; i++) {
+        double values[2];
+        lab_sweep_values(sweep, i, values);
+        write_value(r, "      - [", values[0]);
+        if (is_map) {
+            write_value(r, ", ", values[1]);
+        }
+        write_value(r, ", ", lab_sweep_metric(sweep, i, sweep->metric));
+        fputs("]\n", r->stream);
+    }
+    fprintf(r->stream, "panels:\n  - {from: [sweep]%s, weight: 2}\n",
+            is_map && sweep->second.logarithmic ? ", log: true" : "");
+    fputs(sweep->axis.logarithmic ? "x: {log: true}\n" : "", r->stream);
+    return STATUS_OK;
+}
+
+status shown_figure_write(const explorer_model *model, const explorer_view *view,
+                          int index, const char *folder, double width, FILE *stream,
+                          fault *f)
+{
+    int numbers[PANES + 1], panes[PANES];
+    const int count = numbers_of(view, numbers);
+    shown_recipe *r = g_new0(shown_recipe, 1);
+    *r = (shown_recipe){.model = model, .view = view, .folder = folder, .stream = stream};
+    status code;
+    if (index >= count) {
+        code = write_sweep_figure(r, width);
+    } else if (numbers[index] == 0) {
+        const int shown = panes_of(view, 0, panes);
+        code = write_over_time(r, panes, shown, width, f);
+    } else {
+        panes_of(view, numbers[index], panes);
+        code = write_over_other(r, panes[0], width, f);
+    }
+    g_free(r);
+    return code;
+}
