@@ -30,10 +30,109 @@ TEST(columns_are_found_by_name_and_converted)
                  {"plain[mV]", "V", 2e-3, 3e-3},
                  {"plain", "N", 2, 3}};
     for (EACH(c, cases)) {
-        DONE(csv_table_numbers(&t, c->heading, c->unit, false, &values, &f));
+        DONE(csv_table_numbers(&t, c->heading, c->unit, GAPS_REFUSED, &values, &f));
         check_close(values[0], c->first, 1e-15);
         check_close(values[1], c->second, 1e-15);
         free(values);
+    }
+}
+
+// One table as many programs write it: 0, 0.5 and 1 s, 1.5, -2 and 2500 V.
+TEST(a_table_is_read_however_it_is_written)
+{
+    static const char *const texts[] = {
+        "time[s],v[V]\n0,1.5\n0.5,-2\n1,2500\n",
+        "time[s];v[V]\n0;1,5\n0,5;-2\n1;2,5e3\n",
+        "time (s)\tv (mV)\r\n0\t1500\r\n0.5\t-2e3\r\n1\t2500000\r\n",
+        "  time    v\n  0.0   1.5\n  0.5  -2.0  \n  1.0  2500\n",
+        "time|v\n0|1.5\n0.5|-2\n1|2500\n",
+        "\"time, ms\",\"v, V\"\n\"0\",\"1,5\"\n\"500\",\"-2\"\n\"1000\",\"2500\"\n",
+        "Scope: X2, 3\" probe\nDate,2026\n\ntime,v\ns,V\n0,1.5\n.5,-2\n1,2500\n",
+        "time;v;\n[ms];[V];\n0;1.5;\n500;-2;\n1000;2500;\n",
+        "# a bench's \"log\n# time[s],v[V]\n0,1.5\n# pause\n0.5,-2\n1,2500\n",
+        "% time v\n0 1.5\n0.5 -2\n1 2500\n",
+        "\"time\",\"v\"\n\"1\",0,1.5\n\"2\",0.5,-2\n\"3\",1,2500\n",
+        "time_ms,v_V,note\n0,1.5,begin\n500,-2,\n1000,2500,\"a, b\"\n",
+        "t/s,V/kV,v/V\r0,7,1.5\r0.5,7,-2\r1,7,2500\r",
+        "\xEF\xBB\xBFTIME[us],V[V]\n0,1.5\n5e5,-2\n1e6,2500\n,,\n",
+        "sample,v\n0,1.5\n1,-2\n2,2500\n",
+        "time[#],v\n0,1.5\n1,-2\n2,2500\n",
+        "time,v\n0,1.5\n0.5,-2\n1,2500\n1.5",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        SCOPED(csv_table_finish) csv_table t = {0};
+        SCOPED(free_kept) double *times = NULL, *volts = NULL;
+        sample_clock clock;
+        DONE(read_table(&t, texts[i], 2, &f));
+        DONE(csv_table_times(&t, NULL, 2, &clock, &times, &f));
+        DONE(csv_table_numbers(&t, "v", "V", GAPS_REFUSED, &volts, &f));
+        assert_int_equal(t.rows, 3);
+        for (int r = 0; r < 3; r++) {
+            static const double expected[] = {1.5, -2, 2500};
+            check_close(times[r], 0.5 * r, 1e-15);
+            check_close(volts[r], expected[r], 1e-12);
+        }
+    }
+}
+
+// What is left out is told, with the line where it stands; what lasts is held or missing.
+TEST(rows_without_a_time_are_left_out_and_gaps_filled)
+{
+    char text[4096] = "time[s],v[V],n[N]\n", told[200];
+    for (int i = 0; i < 60; i++) {
+        const char *volts = i % 3 == 1 ? "1" : (i % 2 ? "" : "NaN");
+        char time[16];
+        snprintf(time, sizeof time, "%d", i);
+        if (i == 20) {
+            time[0] = '\0';
+        } else if (i == 31) {
+            snprintf(time, sizeof time, "29.5");
+        }
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s,%s,%s\n", time,
+                 volts, i % 2 ? "2" : "");
+    }
+    snprintf(text + strlen(text), sizeof text - strlen(text), "60,1");
+    SCOPED(csv_table_finish) csv_table t = {0};
+    SCOPED(free_kept) double *times = NULL, *volts = NULL, *newtons = NULL;
+    sample_clock clock;
+    DONE(read_table(&t, text, 2, &f));
+    DONE(csv_table_times(&t, "time", 0, &clock, &times, &f));
+    DONE(csv_table_numbers(&t, "v", "V", GAPS_HELD, &volts, &f));
+    DONE(csv_table_numbers(&t, "n", "N", GAPS_MISSING, &newtons, &f));
+    assert_int_equal(t.rows, 58);
+    check_close(times[20], 21, 1e-12);
+    check_close(times[30], 32, 1e-12);
+    check_close(volts[0], 1, 0);
+    check_close(volts[57], 1, 0);
+    assert_true(isnan(newtons[0]) && newtons[1] == 2 && newtons[57] == 2);
+    assert_string_equal(csv_table_left_out(&t, told, sizeof told),
+                        "line 62, which breaks off, is left out; 1 without a time (the "
+                        "first in line 22); 1 with a time before that of the row above");
+}
+
+// Times that come to the nearest of their last digit are those of the samples, times that
+// scatter more are their own.
+TEST(rounded_stamps_are_the_samples_and_others_their_own)
+{
+    char text[2][4096] = {"time[ms],v\n", "time[ms],v\n"};
+    for (int i = 0; i < 100; i++) {
+        const double own = 3 * i + (i % 7) * 0.05;
+        snprintf(text[0] + strlen(text[0]), sizeof text[0] - strlen(text[0]), "%.0f,1\n",
+                 i * 3.3);
+        snprintf(text[1] + strlen(text[1]), sizeof text[1] - strlen(text[1]), "%.4f,1\n",
+                 own);
+    }
+    for (int k = 0; k < 2; k++) {
+        SCOPED(csv_table_finish) csv_table t = {0};
+        SCOPED(free_kept) double *times = NULL;
+        sample_clock clock;
+        DONE(read_table(&t, text[k], 2, &f));
+        DONE(csv_table_times(&t, "time", 0, &clock, &times, &f));
+        for (int i = 0; i < 100; i++) {
+            const double own = 1e-3 * (3 * i + (i % 7) * 0.05);
+            const double wanted = k == 0 ? i * 3.3e-3 : own;
+            check_close(times[i], wanted, k == 0 ? 6e-5 : 1e-12);
+        }
     }
 }
 
@@ -65,9 +164,11 @@ TEST(what_cannot_be_read_is_named_with_line_and_column)
         double *times = NULL, *values = NULL;
         status code = read_table(&t, c->text, 2, &f);
         if (code == STATUS_OK) {
-            code = csv_table_times(&t, "time", &times, &f);
-            code = code == STATUS_OK ? csv_table_numbers(&t, "v", "V", false, &values, &f)
-                                     : code;
+            sample_clock clock;
+            code = csv_table_times(&t, "time", 0, &clock, &times, &f);
+            code = code == STATUS_OK
+                       ? csv_table_numbers(&t, "v", "V", GAPS_REFUSED, &values, &f)
+                       : code;
             csv_table_finish(&t);
         }
         assert_int_equal(code, STATUS_BAD_ARGUMENT);

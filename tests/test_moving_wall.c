@@ -433,13 +433,21 @@ static void write_sine(double amplitude, double f, double from, double to, doubl
     assert_int_equal(fclose(file), 0);
 }
 
+// A wall that the file moves.
+static parameters path_parameters(void)
+{
+    return fixture_parameters(
+        SETTINGS("wall.motion=file", "wall.motion_file=wall-path.csv"));
+}
+
 // The spline goes through the rows, its rate and acceleration are the derivatives of its
 // place, and neither jumps at a row; a step of the engine ends at each.
 TEST(a_spline_is_smooth_up_to_the_acceleration)
 {
     wall_path *path;
     write_sine(2e-3, 3, -0.25, 0.25, 0.02);
-    DONE(wall_path_create(&path, path_csv, &f));
+    const parameters p = path_parameters();
+    DONE(wall_path_create(&path, &p, &f));
     const wall_motion m = {.kind = MOTION_FILE, .time = 0.4, .path = path};
     for (size_t i = 0; i < path->rows; i++) {
         const double t = 0.4 + path->times[i], next = 1e-9;
@@ -505,11 +513,12 @@ TEST(a_table_with_faults_is_told_with_its_place)
         {"time[s],force[N]\n0,0\n1,1\n", "place"},
         {"time[s],place[m]\n0,0\n1,nan\n", "wall-path.csv:3"},
     };
+    const parameters p = path_parameters();
     for (EACH(c, wrong)) {
         fault f = {0};
         wall_path *path;
         put_file(path_csv, c->text);
-        assert_int_equal(wall_path_create(&path, path_csv, &f), STATUS_BAD_SCENARIO);
+        assert_int_equal(wall_path_create(&path, &p, &f), STATUS_BAD_SCENARIO);
         assert_null(path);
         assert_string_equal(f.path, "wall.motion_file");
         fail_if(strstr(f.text, c->says) == NULL, "%s", f.text);

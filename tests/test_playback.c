@@ -70,16 +70,76 @@ TEST(a_command_is_held_or_goes_straight)
     }
 }
 
+// A recorder's clock is another one than the rig's: its stamps are a little off, fast or
+// slow, rounded, by the time of day. The rows are the samples all the same: the run is
+// that of the stamps without errors, to the last bit.
+TEST(the_rows_of_a_recording_are_the_samples)
+{
+    static const struct {
+        const char *heading;
+        double unit, scatter, fast, begin;
+        int decimals, rows; // a row in so many is left out where the command stays
+    } cases[] = {
+        {"time[s]", 1, 0, 0, 0, 9, 0},
+        {"time[s]", 1, 5e-6, 0, 0, 9, 0},
+        {"time[s]", 1, 0, 20e-6, 0, 9, 0},
+        {"time[s]", 1, 0, -9e-4, 0, 9, 0},
+        {"time[s]", 1, 6e-4, 0, 0, 9, 0},
+        {"time[s]", 1, 0, 0, 0, 3, 0},
+        {"time[s]", 1, 0, 1e-4, 1764e6, 6, 0},
+        {"time[ms]", 1e3, 1e-5, 0, 3600, 3, 0},
+        {"time[ns]", 1e9, 1e-6, 0, 1764e6, 0, 0},
+        {"sample", 500, 0, 0, 0, 0, 0},
+        {"time[s]", 1, 1e-5, 2e-5, 0, 9, 7},
+    };
+    double first_touch = 0, peak = 0;
+    for (EACH(c, cases)) {
+        random_generator random;
+        char text[40000];
+        snprintf(text, sizeof text, "%s,command[V]\n", c->heading);
+        random_seed(&random, 5);
+        double before = 0;
+        for (int n = 0; n < 700; n++) {
+            // 1.5 V, and every 40 samples a sample of another command
+            const double volts = n % 40 == 39 ? 0.5 + 0.01 * (n / 40) : 1.5;
+            const double off = c->scatter * (2 * random_uniform(&random) - 1);
+            const double time = c->begin + n / 500.0 * (1 + c->fast) + off;
+            if (c->rows == 0 || n % c->rows != 3 || volts != before) {
+                const size_t used = strlen(text);
+                snprintf(text + used, sizeof text - used, "%.*f,%.4g\n", c->decimals,
+                         c->unit * time, volts);
+            }
+            before = volts;
+        }
+        put_file("stamps.csv", text);
+        const summary is = rig_summary_with(
+            "control.law=playback control.playback_file=stamps.csv control.rate=500 "
+            "run.duration=1.39");
+        assert_true(is.peak_force_N > 0);
+        if (c == cases) {
+            first_touch = is.first_contact_s;
+            peak = is.peak_force_N;
+        }
+        check_close(is.first_contact_s, first_touch, 0);
+        check_close(is.peak_force_N, peak, 0);
+        const bool foreign = c->begin > 0;
+        assert_true((strstr(is.message, "its clock begins at") != NULL) == foreign);
+    }
+}
+
 TEST(a_file_with_faults_is_told_with_its_place)
 {
     static const struct {
         const char *text, *sentence;
     } cases[] = {
-        {"t[s],command[V]\n0,1\n0.1,nan\n", "bad.csv:3:2: 'nan'"},
+        {"t[s],command[V]\n0,1\n0.1,inf\n", "bad.csv:3:2: 'inf'"},
+        {"t[s],command[V]\n0,nan\n0.1,\n", "bad.csv:2:2: 'nan'"},
         {"t[s],command[V]\n0.2,1\n0.1,2\n", "bad.csv:3:1: the time"},
         {"t[s],u[V]\n0,1\n", "there is no column 'command'"},
         {"x[s],command[V]\n0,1\n", "there is no column 'time'"},
         {"t[s],command[furlong]\n0,1\n", "bad.csv:1:2: the unit [furlong]"},
+        {"t,command\n0,1\n2,1\n4,1\n6,1\n8,1\n10,1\n12,1\n14,1\n16,1\n18,1\n",
+         "bad.csv:3:1: by their times the rows come every 2 s"},
         {"t[s],command[V]\n", "0 rows"},
         {"t[s],command[V]\n0\n", "bad.csv:2"},
         {"", "bad.csv"},

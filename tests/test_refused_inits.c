@@ -28,7 +28,8 @@ FINISHED(table, const char *text)
     SCOPED(free_kept) double *times = NULL;
     status code = csv_table_read(&t, put("t.csv", text), 1, &f);
     if (code == STATUS_OK) {
-        code = csv_table_times(&t, "time", &times, &f);
+        sample_clock clock;
+        code = csv_table_times(&t, "time", 0, &clock, &times, &f);
     }
     csv_table_finish(&t);
     csv_table_finish(&t);

@@ -115,7 +115,9 @@ status plot_run(const scenario *s, const run_result *result, const run_result *o
 // columns, with or without unit ("time[s],force[N]"): "time" and at least one more. A
 // column with the name of a recorded signal is drawn over that signal. COLUMN selects a
 // single column; if its name is not a signal, it is drawn over the first signal of the
-// panels with its unit. SHIFT [s] is added to every time. Empty cells are not drawn,
+// panels with its unit. SHIFT [s] is added to every time; times that are ten times later
+// than the data are long, such as the time of day, count from the first row. Empty cells
+// are not drawn,
 // columns with other names are ignored. Fills an empty trace, to be freed with
 // trace_finish also on failure, and a name for the legend, to be freed with g_free.
 // STATUS_CANNOT_READ for the file, STATUS_BAD_ARGUMENT with path and line for its

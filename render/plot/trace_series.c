@@ -7,8 +7,12 @@
 #include "render/page/text.h"
 #include "render/plot/axis.h"
 #include "render/plot/trace_plot.h"
+#include "src/base/csv_units.h"
 #include "src/base/numbers.h"
 #include "src/run/trace.h"
+
+// over the length of measured data: what their times can lie after the run's begin
+#define LONGEST_RUN 10
 
 // ==== what happened
 
@@ -350,18 +354,12 @@ static int signal_of(const csv_table *table, const char *column,
         return named;
     }
 
-    // the unit in the heading, such as "[N]"
-    char unit[32] = "";
-    const char *bracket = strrchr(table->headings[at], '[');
-    if (bracket != NULL) {
-        snprintf(unit, sizeof unit, "%s", bracket + 1);
-    }
-    unit[strcspn(unit, "]")] = '\0';
-
-    // the first signal with that unit
-    for (int i = 0; i < count; i++) {
+    // the first signal in whose unit it can be had
+    char unit[UNIT_TEXT];
+    const bool said = csv_table_unit(table, at, unit);
+    for (int i = 0; said && i < count; i++) {
         int index = signal_find(panels[i].signals[0]);
-        if (index > 0 && strcmp(signal_table[index].unit, unit) == 0) {
+        if (index > 0 && csv_unit_factor(unit, signal_table[index].unit) != 0) {
             return index;
         }
     }
@@ -394,7 +392,7 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     }
     status code;
     if (column == NULL || (signal > 0 && csv_table_find(&table, column) >= 0)) {
-        code = measured_rows(t, &table, column, signal, f);
+        code = measured_rows(t, &table, 0, column, signal, f);
     } else {
         code = fault_set(
             f, STATUS_BAD_ARGUMENT,
@@ -402,6 +400,15 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
             column);
     }
     csv_table_finish(&table);
+
+    // a clock that has nothing to do with the run's begins at 0
+    if (code == STATUS_OK) {
+        const double first = t->rows[0].time, last = t->rows[t->row_count - 1].time;
+        const double most = LONGEST_RUN * (last - first);
+        if (sample_clock_is_foreign(t->row_count, first + shift, last + shift, most)) {
+            shift -= first;
+        }
+    }
 
     // the data's clock differed by this from the run's
     for (size_t i = 0; i < t->row_count; i++) {

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/csv_table.h"
 #include "src/base/sincos.h"
 
 #define SAME_INSTANT 1e-13 // [s]
@@ -52,25 +51,32 @@ static void find_rates(wall_path *p, double *scratch)
     }
 }
 
-// Checks that the times of the rows rise; otherwise f says at which line they do not.
-static status check_times(const wall_path *p, const csv_table *table, const char *file,
-                          fault *f)
+// Keeps one row for each instant; f says at which line another place stands at the same
+// one.
+static status take_places(wall_path *p, const csv_table *table, fault *f)
 {
-    for (size_t i = 1; i < p->rows; i++) {
-        if (!(p->times[i] > p->times[i - 1])) {
-            const int line = table->lines[i], column = csv_table_find(table, "time") + 1;
+    size_t kept = 1;
+    for (size_t i = 1; i < table->rows; i++) {
+        if (p->times[i] > p->times[kept - 1]) {
+            p->times[kept] = p->times[i];
+            p->places[kept++] = p->places[i];
+        } else if (p->places[i] != p->places[kept - 1]) {
+            const int line = table->lines[i];
+            const int column = csv_table_find(table, csv_table_clock(table)) + 1;
             return fault_set_place(
                 f, STATUS_BAD_ARGUMENT, line, column,
-                "%.300s:%d:%d: time = %g s again: a wall is at one place at a time", file,
-                line, column, p->times[i]);
+                "%.300s:%d:%d: time = %g s again: a wall is at one place at a time",
+                table->file, line, column, p->times[i]);
         }
     }
+    p->rows = kept;
     return STATUS_OK;
 }
 
-status wall_path_create(wall_path **created, const char *file, fault *f)
+status wall_path_create(wall_path **created, const parameters *known, fault *f)
 {
     csv_table table = {0};
+    sample_clock clock;
     wall_path *p = calloc(1, sizeof *p);
     *created = NULL;
     if (p == NULL) {
@@ -78,16 +84,16 @@ status wall_path_create(wall_path **created, const char *file, fault *f)
     }
 
     // the columns, at times that rise
-    status code = csv_table_read(&table, file, 2, f);
+    status code = csv_table_read(&table, known->wall.motion_file, 2, f);
     if (code == STATUS_OK) {
-        code = csv_table_times(&table, "time", &p->times, f);
+        code = csv_table_play(&table, known->control.rate, known->wall.motion_time,
+                              known->run.duration, &clock, &p->times, p->told, f);
     }
     if (code == STATUS_OK) {
-        code = csv_table_numbers(&table, "place", "m", false, &p->places, f);
+        code = csv_table_numbers(&table, "place", "m", GAPS_REFUSED, &p->places, f);
     }
-    p->rows = table.rows;
     if (code == STATUS_OK) {
-        code = check_times(p, &table, file, f);
+        code = take_places(p, &table, f);
     }
     csv_table_finish(&table);
 

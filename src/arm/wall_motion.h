@@ -18,6 +18,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "src/base/csv_table.h"
 #include "src/base/fault.h"
 #include "src/tables/parameters.h"
 
@@ -31,17 +32,18 @@ typedef struct wall_shift {
 
 // A motion given by a table.
 typedef struct wall_path {
-    size_t rows;    // at least 2
-    double *times;  // rising [s]
-    double *places; // [m]
-    double *rates;  // of the spline there, 0 at both ends [m/s]
+    size_t rows;         // at least 2
+    double *times;       // rising [s]
+    double *places;      // [m]
+    double *rates;       // of the spline there, 0 at both ends [m/s]
+    char told[CSV_TOLD]; // what a person should know of the file, "" if nothing
 } wall_path;
 
-// Reads a table with the columns time [s] and place [m] and computes its spline; to be
-// destroyed. STATUS_BAD_SCENARIO, with file, line and column, if it cannot be read, has
-// fewer than two rows, or times that do not rise; STATUS_NO_MEMORY. *created is then
-// NULL.
-status wall_path_create(wall_path **created, const char *file, fault *f);
+// Reads the table of wall.motion_file, with the columns time [s] and place [m], and
+// computes its spline; to be destroyed. STATUS_BAD_SCENARIO, with file, line and column,
+// if it cannot be read, has fewer than two rows, or two places at one time;
+// STATUS_NO_MEMORY. *created is then NULL.
+status wall_path_create(wall_path **created, const parameters *known, fault *f);
 void wall_path_destroy(wall_path *path); // may be NULL
 
 typedef struct wall_motion {

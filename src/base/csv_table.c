@@ -2,205 +2,24 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "src/base/csv_units.h"
 #include "src/base/numbers.h"
-#include "src/base/input_file.h"
+#include "src/base/plain_math.h"
+#include "src/base/scoped.h"
+#include "src/base/words.h"
 
-enum { MOST_COLUMNS = 4096, SHOWN = 60 };
+#define STAMP_ERROR 0.01 // of a period, that a stamp may be off without saying anything
 
-// --- the file --------------------------------------------------------------------------
-
-// The whole file as a text on the heap, the caller's in any case.
-static status read_table_text(const char *path, char **text, fault *f)
-{
-    size_t length;
-    fault why = {0};
-    *text = input_file_read(path, SIZE_MAX / 4, &length, &why);
-    if (*text == NULL) {
-        return input_file_fault(path, &why, f);
-    }
-
-    // a text has no zeros in it
-    if (strlen(*text) != length) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%.300s' is no text, expected a table of numbers (CSV)", path);
-    }
-    return STATUS_OK;
-}
-
-// Copies a field that is not quoted to `to`, up to what ends it; returns where that is.
-static char *copy_plain_field(char *from, char **to)
-{
-    while (*from != '\0' && *from != ',' && *from != '\n') {
-        *(*to)++ = *from++;
-    }
-    return from;
-}
-
-// Copies a quoted field, from behind its first quote on, and returns where it ends. Two
-// quotes in it stand for one; what stands between its last quote and the next comma
-// belongs to the field, too. *line counts the line ends in it.
-static char *copy_quoted_field(char *from, char **to, int *line)
-{
-    while (*from != '\0' && !(from[0] == '"' && from[1] != '"')) {
-        if (*from == '"') {
-            from++;
-        }
-        if (*from == '\n') {
-            (*line)++;
-        }
-        *(*to)++ = *from++;
-    }
-
-    // what stands there, other quotes left out
-    while (*from != '\0' && *from != ',' && *from != '\n') {
-        if (*from != '"') {
-            *(*to)++ = *from;
-        }
-        from++;
-    }
-    return from;
-}
-
-// Takes the first field off the text and returns it without quotes and without blanks at
-// its ends; it is a text of its own, as a 0 is put behind it. Sets *last if it is the
-// last field of its row, adds the line ends it has to *line, and sets *text to what
-// follows, NULL if nothing does.
-static char *next_field(char **text, bool *last, int *line)
-{
-    char *from = *text;
-    while (*from == ' ' || *from == '\t') {
-        from++;
-    }
-    char *const field = from, *to = from;
-    if (*from == '"') {
-        from = copy_quoted_field(from + 1, &to, line);
-    } else {
-        from = copy_plain_field(from, &to);
-    }
-
-    // what ends it, and where the next one begins
-    const char end = *from;
-    *last = end != ',';
-    if (end == '\n') {
-        (*line)++;
-    }
-    if (end == '\0' || (end == '\n' && from[1] == '\0')) {
-        *text = NULL;
-    } else {
-        *text = from + 1;
-    }
-
-    while (to > field && is_blank(to[-1])) {
-        to--;
-    }
-    *to = '\0';
-    return field;
-}
-
-// Takes the first row off the text and adds it to the table. It must have as many fields
-// as there are headings; an empty line is skipped.
-static status take_table_row(csv_table *t, char **text, int *line, fault *f)
-{
-    const int begin = *line;
-    char **row = t->fields + t->rows * (size_t)t->columns;
-
-    int columns = 0;
-    bool last = false;
-    while (*text != NULL && !last && columns < t->columns) {
-        row[columns++] = next_field(text, &last, line);
-    }
-
-    if (columns == 1 && row[0][0] == '\0' && last) {
-        return STATUS_OK;
-    }
-
-    if (columns < t->columns || !last) {
-        const char *how_many = last ? "fewer" : "more";
-        return fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
-                               "%.300s:%d:%d: the row has %s than %d fields, "
-                               "expected one for each heading",
-                               t->file, begin, columns, how_many, t->columns);
-    }
-    t->lines[t->rows++] = begin;
-    return STATUS_OK;
-}
-
-// Splits the text into headings and rows; there is room for all of them.
-static status split_table(csv_table *t, char *text, fault *f)
-{
-    static const char mark[] = "\xEF\xBB\xBF"; // that some programs put before UTF-8
-    if (strncmp(text, mark, strlen(mark)) == 0) {
-        text += strlen(mark);
-    }
-
-    // too many headings are no table
-    int line = 1;
-    bool last = false;
-    while (text != NULL && !last && t->columns < MOST_COLUMNS) {
-        t->headings[t->columns++] = next_field(&text, &last, &line);
-    }
-    while (text != NULL && last) {
-        TRY(take_table_row(t, &text, &line, f));
-    }
-    return STATUS_OK;
-}
-
-// Room for the fields of the text: one for each comma and each line end.
-static status make_table_room(csv_table *t, fault *f)
-{
-    size_t commas = 0, line_ends = 0;
-    for (const char *c = t->text; *c != '\0'; c++) {
-        if (*c == '\n') {
-            line_ends++;
-        } else if (*c == ',') {
-            commas++;
-        }
-    }
-
-    t->headings = calloc(MOST_COLUMNS, sizeof *t->headings);
-    t->fields = calloc(line_ends + commas + 2, sizeof *t->fields);
-    t->lines = calloc(line_ends + 2, sizeof *t->lines);
-    if (t->headings == NULL || t->fields == NULL || t->lines == NULL) {
-        return fault_no_memory(f);
-    }
-    return STATUS_OK;
-}
-
-// The whole table into t, of which nothing but the name of its file is set.
-static status read_table(csv_table *t, size_t least, fault *f)
-{
-    if (t->file == NULL) {
-        return fault_no_memory(f);
-    }
-    TRY(read_table_text(t->file, &t->text, f));
-    TRY(make_table_room(t, f));
-    TRY(split_table(t, t->text, f));
-    if (t->rows >= least) {
-        return STATUS_OK;
-    }
-
-    // fewer rows than are needed
-    int line = 1;
-    if (t->rows > 0) {
-        line = t->lines[t->rows - 1];
-    }
-    const char *plural = t->rows == 1 ? "" : "s";
-    return fault_set_place(
-        f, STATUS_BAD_ARGUMENT, line, 1,
-        "%.300s:%d:1: %zu row%s below the headings, expected at least %zu", t->file, line,
-        t->rows, plural, least);
-}
+enum { SHOWN = 60, ROWS_FOR_ONE_BAD = 20 };
 
 status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
 {
-    *t = (csv_table){.file = strdup(path)};
-    const status code = read_table(t, least, f);
+    const status code = csv_layout_read(t, path, least, f);
     if (code != STATUS_OK) {
         csv_table_finish(t);
     }
@@ -215,6 +34,7 @@ void csv_table_finish(csv_table *t)
     free(t->file);
     free(t->text);
     free(t->headings);
+    free(t->units);
     free(t->fields);
     free(t->lines);
     *t = (csv_table){0};
@@ -222,99 +42,130 @@ void csv_table_finish(csv_table *t)
 
 // --- columns ---------------------------------------------------------------------------
 
-// Length of a heading's name, without "[unit]" and the blanks before it.
-static size_t heading_name_length(const char *heading)
+// Length of the name of a heading that is asked for, without "[unit]".
+static size_t asked_name_length(const char *heading)
 {
     const char *bracket = strrchr(heading, '[');
-    const size_t whole = strlen(heading);
-    if (bracket == NULL || heading[whole - 1] != ']') {
-        return whole;
+    size_t length = strlen(heading);
+    if (bracket == NULL || heading[length - 1] != ']') {
+        return length;
     }
-    while (bracket > heading && is_blank(bracket[-1])) {
-        bracket--;
+    length = (size_t)(bracket - heading);
+    while (length > 0 && is_blank(heading[length - 1])) {
+        length--;
     }
-    return (size_t)(bracket - heading);
+    return length;
 }
 
-// The column of a heading, or of its name in another unit; -1 for none.
 int csv_table_find(const csv_table *t, const char *heading)
 {
-    const size_t length = heading_name_length(heading);
-    int found = -1;
+    const size_t asked = asked_name_length(heading);
+    int same = -1, alike = -1;
 
     // the heading itself, or the first of its name in another unit
     for (int c = t->columns - 1; c >= 0; c--) {
         const char *here = t->headings[c];
+        size_t length;
+        char unit[UNIT_TEXT];
+        csv_unit_split(here, &length, unit);
         if (strcmp(here, heading) == 0) {
             return c;
         }
-        if (heading_name_length(here) == length && strncmp(here, heading, length) == 0) {
-            found = c;
+        if (length == asked && strncmp(here, heading, length) == 0) {
+            same = c;
+        }
+        if (length == asked && strncasecmp(here, heading, length) == 0) {
+            alike = c;
         }
     }
-    return found;
+    if (same >= 0) {
+        return same;
+    }
+    return alike;
 }
 
-// The units that a column may have beside the wanted one, and how many of that they are.
-static const struct {
-    const char *unit, *wanted;
-    double factor;
-} units[] = {
-    {"ms", "s", 1e-3},
-    {"us", "s", 1e-6},
-    {"µs", "s", 1e-6},
-    {"min", "s", 60},
-    {"mV", "V", 1e-3},
-    {"kV", "V", 1e3},
-    {"mN", "N", 1e-3},
-    {"kN", "N", 1e3},
-    {"mrad", "rad", 1e-3},
-    {"deg", "rad", 3.14159265358979323846 / 180},
-    {"°", "rad", 3.14159265358979323846 / 180},
-    {"rev", "rad", 2 * 3.14159265358979323846},
-    {"mrad/s", "rad/s", 1e-3},
-    {"deg/s", "rad/s", 3.14159265358979323846 / 180},
-    {"°/s", "rad/s", 3.14159265358979323846 / 180},
-    {"rpm", "rad/s", 3.14159265358979323846 / 30},
-    {"rad/s^2", "rad/s2", 1},
-    {"rad/s²", "rad/s2", 1},
-    {"deg/s2", "rad/s2", 3.14159265358979323846 / 180},
-    {"mm", "m", 1e-3},
-    {"um", "m", 1e-6},
-    {"cm", "m", 1e-2},
-    {"Nm", "N m", 1},
-    {"mA", "A", 1e-3},
-};
+// Names of the column with the times, then of one that counts samples.
+static const char *const time_names[] = {"time", "t", "timestamp", "time stamp", "stamp"};
+static const char *const count_names[] = {"sample",  "samples", "index", "count",
+                                          "counter", "tick",    "n",     "frame"};
 
-// Copies the unit of a heading; false if it has none.
-static bool copy_unit(const char *heading, char unit[32])
+// The first of some names that a table has as a heading.
+static const char *first_found(const csv_table *t, const char *const *names, size_t count)
 {
-    const char *bracket = heading + heading_name_length(heading);
-    while (is_blank(*bracket)) {
-        bracket++;
+    for (size_t i = 0; i < count; i++) {
+        if (csv_table_find(t, names[i]) >= 0) {
+            return names[i];
+        }
     }
-    if (*bracket != '[') {
+    return NULL;
+}
+
+const char *csv_table_clock(const csv_table *t)
+{
+    const char *name = first_found(t, time_names, sizeof time_names / sizeof *time_names);
+    if (name != NULL) {
+        return name;
+    }
+    return first_found(t, count_names, sizeof count_names / sizeof *count_names);
+}
+
+bool csv_table_unit(const csv_table *t, int column, char unit[UNIT_TEXT])
+{
+    size_t length;
+    if (csv_unit_split(t->headings[column], &length, unit)) {
+        return true;
+    }
+    if (t->units == NULL) {
         return false;
     }
+    csv_unit_alone(t->units[column], unit);
+    return unit[0] != '\0' && strcmp(unit, "-") != 0;
+}
 
-    // what stands between the brackets
-    const int length = (int)strlen(bracket) - 2;
-    snprintf(unit, 32, "%.*s", length, bracket + 1);
+// The unit of a column as it is asked for, else as the table says; false if neither does.
+static bool find_unit(const csv_table *t, const char *heading, int column,
+                      char unit[UNIT_TEXT])
+{
+    const size_t length = asked_name_length(heading);
+    if (heading[length] == '\0') {
+        return csv_table_unit(t, column, unit);
+    }
+    const char *bracket = strrchr(heading, '[');
+    snprintf(unit, UNIT_TEXT, "%.*s", (int)strlen(bracket) - 2, bracket + 1);
     return true;
 }
 
-// The factor to the wanted unit, 0 for an unknown one.
-static double factor_to(const char *unit, const char *wanted)
+// Finds the column of a heading.
+static status find_column(const csv_table *t, const char *heading, int *column, fault *f)
 {
-    if (strcmp(unit, wanted) == 0) {
-        return 1;
+    *column = csv_table_find(t, heading);
+    if (*column < 0) {
+        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
+                               "%.300s:1:1: there is no column '%.*s', expected one of "
+                               "its %d headings, such as '%.*s'",
+                               t->file, SHOWN, heading, t->columns, SHOWN,
+                               t->headings[0]);
     }
-    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
-        if (strcmp(units[i].unit, unit) == 0 && strcmp(units[i].wanted, wanted) == 0) {
-            return units[i].factor;
-        }
+    return STATUS_OK;
+}
+
+// How many of the wanted unit a number in a column is.
+static status find_factor(const csv_table *t, const char *heading, int column,
+                          const char *wanted, double *factor, fault *f)
+{
+    char unit[UNIT_TEXT];
+    *factor = 1;
+    if (find_unit(t, heading, column, unit)) {
+        *factor = csv_unit_factor(unit, wanted);
     }
-    return 0;
+    if (*factor == 0) {
+        return fault_set_place(
+            f, STATUS_BAD_ARGUMENT, 1, column + 1,
+            "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] or "
+            "what can be converted to it",
+            t->file, column + 1, unit, SHOWN, t->headings[column], wanted);
+    }
+    return STATUS_OK;
 }
 
 static const char *field_at(const csv_table *t, size_t row, int column)
@@ -322,84 +173,309 @@ static const char *field_at(const csv_table *t, size_t row, int column)
     return t->fields[row * (size_t)t->columns + (size_t)column];
 }
 
-// The finite number in a field; NaN in one that may be a gap and is. False for all else.
-static bool read_number_field(const char *field, bool gaps, double *number)
+// Whether a field says that there is no number.
+static bool is_gap(const char *field)
 {
-    const char *rest;
-    if (gaps && (field[0] == '\0' || strcasecmp(field, "nan") == 0)) {
-        *number = (double)NAN;
-        return true;
+    static const char *const words[] = {"", "nan", "na", "n/a", "null", "none", "-"};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        if (strcasecmp(field, words[i]) == 0) {
+            return true;
+        }
     }
-    return decimal_read(field, number, &rest) && *rest == '\0' && isfinite(*number);
+    return false;
 }
 
-// The numbers of a column in a unit, which is converted to.
-status csv_table_numbers(const csv_table *t, const char *heading, const char *unit,
-                         bool gaps, double **values, fault *f)
+static status refuse_field(const csv_table *t, size_t row, int column, fault *f)
 {
+    return fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[row], column + 1,
+                           "%.300s:%d:%d: '%.*s' in column '%.*s' is no finite number",
+                           t->file, t->lines[row], column + 1, SHOWN,
+                           field_at(t, row, column), SHOWN, t->headings[column]);
+}
+
+// Reads the fields of a column, NaN for a gap where one may be.
+static status read_fields(const csv_table *t, int column, double factor, bool gaps,
+                          double *values, fault *f)
+{
+    for (size_t r = 0; r < t->rows; r++) {
+        const char *field = field_at(t, r, column);
+        if (gaps && is_gap(field)) {
+            values[r] = (double)NAN;
+        } else if (csv_layout_number(field, t->decimal, &values[r])) {
+            values[r] *= factor;
+        } else {
+            return refuse_field(t, r, column, f);
+        }
+    }
+    return STATUS_OK;
+}
+
+// Fills gaps with the value above, those above the first value with that.
+static status hold_values(const csv_table *t, int column, double *values, fault *f)
+{
+    size_t first = 0;
+    while (first < t->rows && isnan(values[first])) {
+        first++;
+    }
+    if (first == t->rows) {
+        return refuse_field(t, 0, column, f);
+    }
+    for (size_t r = 0; r < first; r++) {
+        values[r] = values[first];
+    }
+    for (size_t r = first; r < t->rows; r++) {
+        if (isnan(values[r])) {
+            values[r] = values[r - 1];
+        }
+    }
+    return STATUS_OK;
+}
+
+status csv_table_numbers(const csv_table *t, const char *heading, const char *unit,
+                         csv_gaps gaps, double **values, fault *f)
+{
+    int column;
+    double factor;
     *values = NULL;
-    const int column = csv_table_find(t, heading);
-    if (column < 0) {
-        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
-                               "%.300s:1:1: there is no column '%.*s', expected one of "
-                               "its %d headings, such as '%.*s'",
-                               t->file, SHOWN, heading, t->columns, SHOWN,
-                               t->headings[0]);
-    }
+    TRY(find_column(t, heading, &column, f));
+    TRY(find_factor(t, heading, column, unit, &factor, f));
 
-    // its unit
-    char own[32];
-    const bool said = copy_unit(heading, own) || copy_unit(t->headings[column], own);
-    double factor = 1;
-    if (said) {
-        factor = factor_to(own, unit);
-    }
-    if (factor == 0) {
-        return fault_set_place(
-            f, STATUS_BAD_ARGUMENT, 1, column + 1,
-            "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] or "
-            "what can be converted to it",
-            t->file, column + 1, own, SHOWN, t->headings[column], unit);
-    }
-
-    // and its numbers
     double *numbers = calloc(t->rows + 1, sizeof *numbers);
     if (numbers == NULL) {
         return fault_no_memory(f);
     }
-    for (size_t r = 0; r < t->rows; r++) {
-        const char *field = field_at(t, r, column);
-        if (!read_number_field(field, gaps, &numbers[r])) {
-            free(numbers);
-            return fault_set_place(
-                f, STATUS_BAD_ARGUMENT, t->lines[r], column + 1,
-                "%.300s:%d:%d: '%.*s' in column '%.*s' is no finite number", t->file,
-                t->lines[r], column + 1, SHOWN, field, SHOWN, t->headings[column]);
-        }
-        numbers[r] *= factor;
+    status code = read_fields(t, column, factor, gaps != GAPS_REFUSED, numbers, f);
+    if (code == STATUS_OK && gaps == GAPS_HELD) {
+        code = hold_values(t, column, numbers, f);
+    }
+    if (code != STATUS_OK) {
+        free(numbers);
+        return code;
     }
     *values = numbers;
     return STATUS_OK;
 }
 
-// A column of times, which may not go back.
-status csv_table_times(const csv_table *t, const char *heading, double **values, fault *f)
-{
-    status code = csv_table_numbers(t, heading, "s", false, values, f);
+// --- times -----------------------------------------------------------------------------
 
-    for (size_t r = 1; code == STATUS_OK && r < t->rows; r++) {
-        if ((*values)[r] < (*values)[r - 1]) {
-            const int column = csv_table_find(t, heading) + 1;
-            code = fault_set_place(
-                f, STATUS_BAD_ARGUMENT, t->lines[r], column,
-                "%.300s:%d:%d: the time %.9g s lies before that of the row "
-                "above, %.9g s, expected rows by growing time",
-                t->file, t->lines[r], column, (*values)[r], (*values)[r - 1]);
-            free(*values);
-            *values = NULL;
+// Whether a column of times counts samples: its unit says so, or its name.
+static bool counts_samples(const csv_table *t, const char *heading, int column)
+{
+    char unit[UNIT_TEXT];
+    if (find_unit(t, heading, column, unit)) {
+        return csv_unit_counts(unit);
+    }
+    for (size_t i = 0; i < sizeof count_names / sizeof *count_names; i++) {
+        if (strcasecmp(heading, count_names[i]) == 0) {
+            return true;
         }
     }
-    return code;
+    return false;
+}
+
+// Moves a row of the table up to another place.
+static void move_row(csv_table *t, size_t from, size_t to)
+{
+    const size_t columns = (size_t)t->columns;
+    memmove(t->fields + to * columns, t->fields + from * columns,
+            columns * sizeof *t->fields);
+    t->lines[to] = t->lines[from];
+}
+
+// Takes the rows out of the table whose time is missing or lies before that of the row
+// above, and counts them.
+static void leave_out_rows(csv_table *t, double *times)
+{
+    size_t kept = 0;
+    for (size_t r = 0; r < t->rows; r++) {
+        const bool recedes = kept > 0 && times[r] < times[kept - 1];
+        if (isnan(times[r])) {
+            if (t->untimed++ == 0) {
+                t->untimed_line = t->lines[r];
+            }
+        } else if (recedes) {
+            if (t->receding++ == 0) {
+                t->receding_line = t->lines[r];
+            }
+        } else {
+            times[kept] = times[r];
+            move_row(t, r, kept++);
+        }
+    }
+    t->rows = kept;
+}
+
+// Refuses a table of which too many rows have no time, or one before that of the row
+// above, by the first such row.
+static status check_times(const csv_table *t, int column, const double *times, fault *f)
+{
+    size_t untimed = 0, receding = 0, first_untimed = 0, first_receding = 0, latest = 0;
+    for (size_t r = 0; r < t->rows; r++) {
+        if (isnan(times[r])) {
+            if (untimed++ == 0) {
+                first_untimed = r;
+            }
+        } else if (times[r] < times[latest]) {
+            if (receding++ == 0) {
+                first_receding = r;
+            }
+        } else {
+            latest = r;
+        }
+    }
+    if (untimed > t->rows / ROWS_FOR_ONE_BAD || isnan(times[0])) {
+        return refuse_field(t, first_untimed, column, f);
+    }
+    if (receding <= t->rows / ROWS_FOR_ONE_BAD) {
+        return STATUS_OK;
+    }
+    const int line = t->lines[first_receding];
+    return fault_set_place(f, STATUS_BAD_ARGUMENT, line, column + 1,
+                           "%.300s:%d:%d: the time %.9g s lies before that of the row "
+                           "above, %.9g s, as in %zu rows: expected rows by growing time",
+                           t->file, line, column + 1, times[first_receding],
+                           times[first_receding - 1], receding);
+}
+
+// What the last digit of a number stands for.
+static double last_digit(const char *field, char decimal)
+{
+    double exponent = 0;
+    const char *rest, *e = strpbrk(field, "eE"), *point = strchr(field, decimal);
+    if (e != NULL) {
+        decimal_read(e + 1, &exponent, &rest);
+    }
+    if (point != NULL) {
+        const char *digits = point + 1;
+        exponent -= (double)strspn(digits, "0123456789");
+    }
+    return plain_pow(10, exponent);
+}
+
+// Lets the stamps be the instants of the clock's samples, if they are off them by no more
+// than rounding and a small part of a period.
+static void take_instants(const csv_table *t, int column, double factor,
+                          const sample_clock *clock, double *times)
+{
+    if (clock->period == 0 || t->rows < RECORDED_ROWS) {
+        return;
+    }
+    for (size_t r = 0; r < t->rows; r++) {
+        const double n = sample_clock_number(clock, times[r]);
+        const double off = fabs(times[r] - sample_clock_instant(clock, n));
+        const double digit = factor * last_digit(field_at(t, r, column), t->decimal);
+        if (off > digit / 2 + STAMP_ERROR * clock->period) {
+            return;
+        }
+    }
+    for (size_t r = 0; r < t->rows; r++) {
+        const double n = sample_clock_number(clock, times[r]);
+        times[r] = sample_clock_instant(clock, n);
+    }
+}
+
+status csv_table_times(csv_table *t, const char *heading, double rate,
+                       sample_clock *clock, double **values, fault *f)
+{
+    int column;
+    double factor;
+    *values = NULL;
+    if (heading == NULL) {
+        heading = csv_table_clock(t);
+    }
+    if (heading == NULL) {
+        heading = time_names[0];
+    }
+    TRY(find_column(t, heading, &column, f));
+
+    // a number of a sample, or a time
+    if (counts_samples(t, heading, column)) {
+        if (rate == 0) {
+            return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, column + 1,
+                                   "%.300s:1:%d: '%.*s' counts samples, whose rate is "
+                                   "not known here, expected times such as time[s]",
+                                   t->file, column + 1, SHOWN, t->headings[column]);
+        }
+        factor = 1 / rate;
+    } else {
+        TRY(find_factor(t, heading, column, "s", &factor, f));
+    }
+
+    // the rows that have one
+    SCOPED(free_kept) double *times = calloc(t->rows + 1, sizeof *times);
+    if (times == NULL) {
+        return fault_no_memory(f);
+    }
+    TRY(read_fields(t, column, factor, true, times, f));
+    TRY(check_times(t, column, times, f));
+    leave_out_rows(t, times);
+
+    // and when they were recorded
+    if (!sample_clock_fit(clock, times, t->rows)) {
+        return fault_no_memory(f);
+    }
+    take_instants(t, column, factor, clock, times);
+    *values = times;
+    times = NULL;
+    return STATUS_OK;
+}
+
+// Refuses a recording whose samples are further apart than a run lasts.
+static status check_speed(const csv_table *t, const sample_clock *clock, double end,
+                          fault *f)
+{
+    const bool slow = sample_clock_is_foreign(t->rows, clock->period, clock->period, end);
+    if (!slow) {
+        return STATUS_OK;
+    }
+    return fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[1], 1,
+                           "%.300s:%d:1: by their times the rows come every %.4g s, "
+                           "which is more than the whole run, %.4g s: expected times in "
+                           "s, or with their unit in the heading, such as time[ms]",
+                           t->file, t->lines[1], clock->period, end);
+}
+
+status csv_table_play(csv_table *t, double rate, double shift, double end,
+                      sample_clock *clock, double **values, char told[CSV_TOLD], fault *f)
+{
+    TRY(csv_table_times(t, NULL, rate, clock, values, f));
+    double *times = *values;
+    const double first = times[0], last = times[t->rows - 1];
+    const status code = check_speed(t, clock, end, f);
+    if (code != STATUS_OK) {
+        free(times);
+        *values = NULL;
+        return code;
+    }
+
+    // what is left out, and whose clock it is
+    csv_table_left_out(t, told, CSV_TOLD);
+    if (sample_clock_is_foreign(t->rows, first + shift, last + shift, end)) {
+        text_add(told, CSV_TOLD, "%sits clock begins at %.9g s, which is taken for 0",
+                 told[0] != '\0' ? "; " : "", first);
+        for (size_t r = 0; r < t->rows; r++) {
+            times[r] -= first;
+        }
+        clock->origin -= first;
+    }
+    return STATUS_OK;
+}
+
+const char *csv_table_left_out(const csv_table *t, char *text, size_t size)
+{
+    text[0] = '\0';
+    if (t->cut_line > 0) {
+        text_add(text, size, "line %d, which breaks off, is left out", t->cut_line);
+    }
+    if (t->untimed > 0) {
+        text_add(text, size, "%s%zu without a time (the first in line %d)",
+                 text[0] != '\0' ? "; " : "", t->untimed, t->untimed_line);
+    }
+    if (t->receding > 0) {
+        text_add(text, size, "%s%zu with a time before that of the row above",
+                 text[0] != '\0' ? "; " : "", t->receding);
+    }
+    return text;
 }
 
 // The value of a column at an instant, held or linear between rows.

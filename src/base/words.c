@@ -261,3 +261,13 @@ void print_printable(FILE *stream, const char *format, ...)
     print_printable_list(stream, format, list);
     va_end(list);
 }
+
+void text_add(char *text, size_t size, const char *format, ...)
+{
+    const size_t used = strlen(text);
+    va_list list;
+    assert(used < size);
+    va_start(list, format);
+    decimal_vprint(text + used, size - used, format, list);
+    va_end(list);
+}

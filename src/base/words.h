@@ -64,3 +64,7 @@ void print_printable(FILE *stream, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void print_printable_list(FILE *stream, const char *format, va_list list)
     __attribute__((format(printf, 2, 0)));
+
+// Appends to a text in `size` bytes as much as has room, with a decimal point.
+void text_add(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));

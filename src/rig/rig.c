@@ -97,7 +97,7 @@ static status open_named_law(rig *r, const parameters *p, const rig_options *o, 
     r->law = controller_of(c->law);
     if (c->law == LAW_PLAYBACK) {
         r->given = (given_law){r->law, &r->played};
-        return played_command_open(&r->played, c, f);
+        return played_command_open(&r->played, p, f);
     }
     if (r->law != NULL) {
         return STATUS_OK;

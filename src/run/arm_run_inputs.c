@@ -25,11 +25,12 @@ void arm_run_bind_arm(arm_run *run)
 
 status arm_run_read_path(arm_run *run, fault *f)
 {
-    const wall_parameters *wall = &run->recording->scenario->parameters.wall;
+    const parameters *known = &run->recording->scenario->parameters;
+    const wall_parameters *wall = &known->wall;
     if (wall->motion != MOTION_FILE || wall->kind == WALL_NONE) {
         return STATUS_OK;
     }
-    TRY(wall_path_create(&run->path, wall->motion_file, f));
+    TRY(wall_path_create(&run->path, known, f));
     run->arm.wall.motion.path = run->path;
     return STATUS_OK;
 }

@@ -275,6 +275,21 @@ static void remark_on_weight(const arm_run *run)
            p->arm.tilt, missed);
 }
 
+// Remarks what a person should know of the files that a command or a wall's motion was
+// read from.
+static void remark_on_recordings(const arm_run *run)
+{
+    const recording *r = run->recording;
+    const parameters *p = &r->scenario->parameters;
+    summary *s = &r->result->summary;
+    if (r->rig != NULL && r->rig->played.told[0] != '\0') {
+        remark(s, "%s: %s", p->control.playback_file, r->rig->played.told);
+    }
+    if (run->path != NULL && run->path->told[0] != '\0') {
+        remark(s, "%s: %s", p->wall.motion_file, run->path->told);
+    }
+}
+
 // Calls the run inaccurate, with a remark each, where its energy ledger does not close,
 // where the arm was inside a rigid wall, and where friction held more than it can.
 static void judge_accuracy(const arm_run *run, double energy, double rounding)
@@ -318,6 +333,7 @@ static void judge(const arm_run *run)
     remark_on_contacts(run);
     remark_on_weight(run);
     remark_on_single_link(run);
+    remark_on_recordings(run);
     judge_accuracy(run, energy, rounding);
 
     // what rounding seems to have put in is nothing

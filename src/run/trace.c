@@ -315,8 +315,8 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
 
 // --- recorded tables ---
 
-status measured_rows(trace *t, const csv_table *table, const char *column, int signal,
-                     fault *f)
+status measured_rows(trace *t, csv_table *table, double rate, const char *column,
+                     int signal, fault *f)
 {
     assert(signal < signal_count);
 
@@ -324,7 +324,8 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
     static const double none[1] = {0};
     double *columns[SIGNALS_AT_MOST] = {NULL};
     size_t numbers = 0;
-    status code = csv_table_times(table, "time", &columns[0], f);
+    sample_clock clock;
+    status code = csv_table_times(table, NULL, rate, &clock, &columns[0], f);
     for (int i = 1; i < signal_count && code == STATUS_OK; i++) {
         const char *heading;
         if (column == NULL) {
@@ -335,7 +336,7 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
             heading = NULL;
         }
         if (heading != NULL && csv_table_find(table, heading) >= 0) {
-            code = csv_table_numbers(table, heading, signal_table[i].unit, true,
+            code = csv_table_numbers(table, heading, signal_table[i].unit, GAPS_MISSING,
                                      &columns[i], f);
         }
     }

@@ -132,10 +132,11 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
 
 // --- recorded tables as traces: measured signals beside those of a run ---
 
-// Appends a row for each row of a table with a column "time": of the columns that are
+// Appends a row for each row of a table with a column of times, or of numbers of samples
+// that came at `rate` [1/s] (0: such are refused): of the columns that are
 // headed as signals, in their units, or of `column` alone (not NULL), which stands for
 // `signal`. What was not measured is NaN. STATUS_BAD_ARGUMENT with the line in f: no
 // time, times that fall, no such column, a field that is no number, no number at all;
 // STATUS_NO_MEMORY.
-status measured_rows(trace *t, const csv_table *table, const char *column, int signal,
-                     fault *f);
+status measured_rows(trace *t, csv_table *table, double rate, const char *column,
+                     int signal, fault *f);

@@ -13,6 +13,7 @@
 #include <jansson.h>
 #include <stdio.h>
 
+#include "src/base/csv_table.h"
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 #include "src/study/sweep_axis.h"
@@ -46,13 +47,29 @@ enum { OWN_SHIFT, OWN_OFFSET, OWN_ANGLE, OWN_VELOCITY, OWNS };
 
 enum { IDENTIFY_UNKNOWNS = IDENTIFY_PATHS + IDENTIFY_TRACES * OWNS };
 
+// What becomes of a reading.
+typedef enum reading_use {
+    READING_COMPARED,
+    READING_MISSING,         // its field is empty
+    READING_NEAR_TOUCH,      // within IDENTIFY_GUARD of a touch or a release
+    READING_WITHOUT_CONTACT, // of the FSR, which reads nothing then
+    READING_AT_RANGE,        // near the end of the converter's range
+    READING_USES
+} reading_use;
+
 typedef struct recorded_trace {
     char *file;
-    size_t rows;                 // one for each sample of the rig
-    double begin;                // of its clock [s]
-    double *time;                // since then [s]
-    double *command;             // [V]
-    double *reading[CHANNELS];   // in the signal's unit, NULL: not recorded
+    size_t table_rows;                   // of its table
+    char left_out[CSV_TOLD];             // rows that are not among those, in words, or ""
+    sample_clock clock;                  // of its samples
+    bool is_held;                        // rows between samples repeat these
+    size_t overwritten;                  // rows that a later one of their sample replaces
+    size_t uses[CHANNELS][READING_USES]; // how many readings of each
+    size_t rows;                         // one for each sample of the rig
+    double begin;                        // of its clock [s]
+    double *time;                        // since then [s]
+    double *command;                     // [V]
+    double *reading[CHANNELS];           // in the signal's unit, NULL: not recorded
     double *deviation[CHANNELS]; // standard deviation of each in its residual's unit, 0:
                                  // left out
     double *contacts; // instants of touches after a flight of at least IDENTIFY_GUARD [s]
@@ -119,8 +136,9 @@ status identify_available(fault *f);
 status identify_add_path(identification *id, const char *text, fault *f);
 
 // Reads a trace: `time`, `command` and at least one reading, headed as in signal_table or
-// as columns[] say ("SIGNAL=HEADER[unit]"). Of rows between two samples of the rig the
-// first counts. Fails as csv_table_read does.
+// as columns[] say ("SIGNAL=HEADER[unit]"), at the rate of its own clock. Rows that
+// repeat a sample until the next one are one. Fails as csv_table_read does, where
+// columns[] name no signal, and where the times do not tell samples apart.
 status identify_add_trace(identification *id, const char *file, char *const *columns,
                           int count, fault *f);
 void identify_finish(identification *id);
@@ -166,6 +184,10 @@ json_t *identify_traces_json(const identification *id);
 void identify_write_set(FILE *stream, const identification *id);
 
 // --- for the parts of identify
+
+// The rate at which a trace's samples came [1/s]: that of its clock, `usual` where that
+// is the same within its error, or where they came at no steady rate.
+double identify_rate(const recorded_trace *t, double usual);
 
 // The value of the range to search that is nearest to another.
 double identify_within_range(const fitted_parameter *fit, double value);

@@ -12,9 +12,12 @@
 
 #define FAILED_RUN      1e3  // residual of a run that fails, in standard deviations
 #define SAME_INSTANT    1e-6 // of a sampling period
-#define ROW_MARGIN      1e-4 // of a sampling period, that its last row keeps from its end
 #define NEAR_RANGE      5.0  // standard deviations from the end of a converter's range
 #define LEAST_DEVIATION 1e-6 // of an ideal channel, in its unit
+#define ROUNDING        1e-9 // relative, of a period
+#define HELD            1.5  // periods of rows that a sample lasts which they repeat
+
+enum { LEAST_CHANGES = 20, ROWS_FOR_ONE_BAD = 20 };
 
 const int identify_signals[CHANNELS] = {
     SIGNAL_INDEX(encoder),     SIGNAL_INDEX(tachometer), SIGNAL_INDEX(force_reading),
@@ -22,60 +25,164 @@ const int identify_signals[CHANNELS] = {
 
 // --- reading ---------------------------------------------------------------------------
 
-// Reads a signal's column. Its heading is what `columns` says ("signal=heading"), else
-// the signal's name. A column that is missing and not needed leaves NULL in *values.
-static status read_column(const csv_table *t, const char *signal, const char *unit,
-                          bool needed, char *const *columns, int count, double **values,
-                          fault *f)
+// What `columns` say ("signal=heading") is the heading of a signal; NULL if nothing.
+static const char *said_heading(const char *signal, char *const *columns, int count)
 {
-    const char *heading = signal;
     const size_t length = strlen(signal);
     for (int i = 0; i < count; i++) {
         if (strncmp(columns[i], signal, length) == 0 && columns[i][length] == '=') {
-            heading = columns[i] + length + 1;
-            needed = true;
+            return columns[i] + length + 1;
         }
     }
-    *values = NULL;
+    return NULL;
+}
+
+// Reads a signal's column, of a channel's or the command's [V]. Its heading is the
+// signal's name unless the caller says another one. A reading that is missing, and of
+// which nothing is said, leaves NULL in *values.
+static status read_column(const csv_table *t, const char *signal, const char *unit,
+                          const char *said, csv_gaps gaps, double **values, fault *f)
+{
+    const char *heading = said != NULL ? said : signal;
     const bool missing = csv_table_find(t, heading) < 0;
-    if (!needed && missing) {
-        return STATUS_OK;
-    }
-    if (missing && strcmp(heading, "command") == 0) {
+    *values = NULL;
+    if (missing && said == NULL && gaps == GAPS_HELD) {
         return fault_set_place(
             f, STATUS_BAD_ARGUMENT, 1, 1,
             "%.300s:1:1: there is no column 'command', the voltage [V] with "
             "which each trial run is driven: record it, or rename its heading",
             t->file);
     }
-    if (strcmp(signal, "time") == 0) {
-        return csv_table_times(t, heading, values, f);
+    if (missing && said == NULL) {
+        return STATUS_OK;
     }
-    return csv_table_numbers(t, heading, unit, false, values, f);
+    return csv_table_numbers(t, heading, unit, gaps, values, f);
 }
 
-// Keeps one row for each sampling period: of several rows within a period, which repeat
-// what the rig holds, the first one's time and the last one's values. Time then counts
-// from the first row.
-static void keep_samples(recorded_trace *t, double rate)
+static bool is_called(const char *name, const char *text, size_t length)
 {
-    size_t kept = 0;
-    double last_period = -1;
-    const double begin = t->begin = t->time[0];
-    for (size_t i = 0; i < t->rows; i++) {
-        const double period = floor((t->time[i] - begin) * rate + SAME_INSTANT);
-        if (period > last_period) {
-            t->time[kept++] = t->time[i] - begin;
-            last_period = period;
-        }
-        t->command[kept - 1] = t->command[i];
+    return strlen(name) == length && strncmp(name, text, length) == 0;
+}
+
+// Refuses "signal=heading" of a signal that no trace has.
+static status check_columns(char *const *columns, int count, fault *f)
+{
+    for (int i = 0; i < count; i++) {
+        const char *text = columns[i];
+        const size_t length = strcspn(text, "=");
+        bool known =
+            is_called("time", text, length) || is_called("command", text, length);
         for (int c = 0; c < CHANNELS; c++) {
-            if (t->reading[c] != NULL) {
-                t->reading[c][kept - 1] = t->reading[c][i];
-            }
+            const char *name = signal_table[identify_signals[c]].name;
+            known = known || is_called(name, text, length);
+        }
+        FAULT_IF(!known || text[length] != '=', f, STATUS_BAD_ARGUMENT,
+                 "--column '%.100s' names no signal of a trace, expected "
+                 "SIGNAL=HEADER[unit] with time, command or a reading such as encoder",
+                 text);
+    }
+    return STATUS_OK;
+}
+
+// Whether a row has another value than the row above it, in any column.
+static bool row_changes(const recorded_trace *t, size_t i)
+{
+    bool changes = i == 0 || t->command[i] != t->command[i - 1];
+    for (int c = 0; c < CHANNELS && !changes; c++) {
+        const double *reading = t->reading[c];
+        changes = reading != NULL && !isnan(reading[i]) && reading[i] != reading[i - 1];
+    }
+    return changes;
+}
+
+// Finds the clock of the samples, where the rows are not samples but repeat what the rig
+// holds between them: then all that changes does so at the samples of a slower clock.
+// *held is how many rows have changes, of which there need to be some for that.
+static status find_held_clock(const recorded_trace *t, sample_clock *held, fault *f)
+{
+    SCOPED(free_kept) double *changed = calloc(t->rows, sizeof *changed);
+    size_t count = 0;
+    *held = (sample_clock){.period = 0};
+    if (changed == NULL) {
+        return fault_no_memory(f);
+    }
+    for (size_t i = 0; i < t->rows; i++) {
+        if (row_changes(t, i)) {
+            changed[count++] = t->time[i];
         }
     }
+    if (count >= LEAST_CHANGES && !sample_clock_fit(held, changed, count)) {
+        return fault_no_memory(f);
+    }
+    return STATUS_OK;
+}
+
+// Puts row i in the place of a sample; if it is not the first there, the readings that it
+// has.
+static void put_row(recorded_trace *t, size_t i, size_t place, bool first)
+{
+    t->command[place] = t->command[i];
+    for (int c = 0; c < CHANNELS; c++) {
+        double *reading = t->reading[c];
+        if (reading != NULL && (first || !isnan(reading[i]))) {
+            reading[place] = reading[i];
+        }
+    }
+}
+
+// Refuses a trace of which many rows have the same times as others.
+static status check_stamps(const recorded_trace *t, size_t alike, size_t rows, fault *f)
+{
+    FAULT_IF(alike > rows / ROWS_FOR_ONE_BAD, f, STATUS_BAD_ARGUMENT,
+             "%.300s:2: by their times %zu of %zu rows belong to the sample of the row "
+             "above and yet differ from it, expected times that tell samples apart",
+             t->file, alike, rows);
+    return STATUS_OK;
+}
+
+// Keeps one row for each sample: of several, which repeat what the rig holds, the last
+// one's values. Time then counts from the first sample.
+static status keep_samples(recorded_trace *t, fault *f)
+{
+    sample_clock held;
+    TRY(find_held_clock(t, &held, f));
+    const double row_period = t->clock.period;
+    t->is_held = held.period > HELD * row_period;
+
+    // by how much of a period a row may come before its sample
+    double margin = 0.5;
+    if (t->is_held) {
+        t->clock = held;
+        margin = fmax(row_period / 2, 4 * held.scatter) / held.period + SAME_INSTANT;
+    }
+
+    // samples have numbers at a steady rate, else times that differ
+    const double period = t->clock.period;
+    t->begin = period > 0 ? t->clock.origin : t->time[0];
+    size_t kept = 0, alike = 0;
+    double last = -HUGE_VAL;
+    bool sample_changed = false;
+    for (size_t i = 0; i < t->rows; i++) {
+        double number = t->time[i];
+        if (period > 0) {
+            number = floor((t->time[i] - t->begin) / period + margin);
+        }
+        const bool changes = row_changes(t, i), first = number > last;
+        if (first) {
+            t->time[kept++] = t->is_held ? number * period : t->time[i] - t->begin;
+            sample_changed = false;
+        }
+        if (changes && sample_changed) {
+            alike++;
+        }
+        sample_changed = sample_changed || changes;
+        last = number;
+        put_row(t, i, kept - 1, first);
+    }
+    TRY(check_stamps(t, alike, t->rows, f));
+    t->overwritten = alike;
     t->rows = kept;
+    return STATUS_OK;
 }
 
 // The sensor that says when the arm touches: the FSR, else the piezoelectric one.
@@ -141,14 +248,20 @@ static void find_touches(recorded_trace *t, double threshold, unsigned char *nea
 {
     const double *force = t->reading[force_channel(t)];
     double released = -HUGE_VAL;
-    for (size_t i = 1; force != NULL && i < t->rows; i++) {
-        const bool touched = force[i - 1] > threshold, touches = force[i] > threshold;
+    size_t before = t->rows; // the last reading; none yet
+    for (size_t i = 0; force != NULL && i < t->rows; i++) {
+        if (isnan(force[i])) {
+            continue;
+        }
+        const size_t last = before < t->rows ? before : i;
+        const bool touched = force[last] > threshold, touches = force[i] > threshold;
+        before = i;
         if (touched == touches) {
             continue;
         }
 
         // a touch soon after a release is no touch of its own
-        const double change = (t->time[i - 1] + t->time[i]) / 2;
+        const double change = (t->time[last] + t->time[i]) / 2;
         if (touches && change - released > IDENTIFY_GUARD) {
             t->contacts[t->contact_count++] = change;
         }
@@ -190,10 +303,20 @@ static status weigh_channel(recorded_trace *t, int c, const parameters *p,
             const double size = fabs(compared_value(&p->sensor, c, reading[k]));
             const bool touches =
                 c != CHANNEL_FSR || reading[k] > p->control.contact_threshold;
-            if (!near[k] && touches && size < range - NEAR_RANGE * deviation) {
+            reading_use use = READING_COMPARED;
+            if (isnan(reading[k])) {
+                use = READING_MISSING;
+            } else if (near[k]) {
+                use = READING_NEAR_TOUCH;
+            } else if (!touches) {
+                use = READING_WITHOUT_CONTACT;
+            } else if (!(size < range - NEAR_RANGE * deviation)) {
+                use = READING_AT_RANGE;
+            } else {
                 t->deviation[c][k] = deviation * sqrt((double)(end - i));
                 t->residuals++;
             }
+            t->uses[c][use]++;
         }
     }
     return STATUS_OK;
@@ -217,54 +340,58 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
     return STATUS_OK;
 }
 
+// The first reading of a channel, NaN if there is none.
+static double first_reading(const recorded_trace *t, int channel)
+{
+    size_t first = 0;
+    while (t->reading[channel] != NULL && first < t->rows) {
+        if (!isnan(t->reading[channel][first])) {
+            return t->reading[channel][first];
+        }
+        first++;
+    }
+    return (double)NAN;
+}
+
 // Guesses the state that the trace starts with: the angle that the encoder reads first,
 // and the tachometer's first velocity if that differs from the scenario's by more than
 // noise.
 static void guess_start(recorded_trace *t, const parameters *p)
 {
-    const double *encoder = t->reading[CHANNEL_ENCODER],
-                 *speed = t->reading[CHANNEL_TACHOMETER];
+    const double encoder = first_reading(t, CHANNEL_ENCODER),
+                 speed = first_reading(t, CHANNEL_TACHOMETER);
     double range;
     bool dithered;
     t->own[OWN_ANGLE] = p->initial.angle;
     t->own[OWN_VELOCITY] = p->initial.velocity;
-    if (encoder != NULL) {
+    if (!isnan(encoder)) {
         t->own[OWN_ANGLE] =
-            (encoder[0] - p->sensor.encoder_offset) / (1 + p->sensor.encoder_gain_error);
+            (encoder - p->sensor.encoder_offset) / (1 + p->sensor.encoder_gain_error);
     }
     const double noise = deviation_of(&p->sensor, CHANNEL_TACHOMETER, &range, &dithered);
     t->fits_velocity = p->initial.velocity != 0;
-    if (speed != NULL && fabs(speed[0] - p->initial.velocity) > NEAR_RANGE * noise) {
-        t->own[OWN_VELOCITY] = speed[0];
+    if (fabs(speed - p->initial.velocity) > NEAR_RANGE * noise) {
+        t->own[OWN_VELOCITY] = speed;
         t->fits_velocity = true;
     }
 }
 
-status identify_add_trace(identification *id, const char *file, char *const *columns,
-                          int count, fault *f)
+// Reads the columns of a trace; readings that are all missing are none.
+static status read_columns(recorded_trace *t, const csv_table *table,
+                           char *const *columns, int count, fault *f)
 {
-    assert(id->trace_count <= IDENTIFY_TRACES);
-    FAULT_IF(id->trace_count == IDENTIFY_TRACES, f, STATUS_BAD_ARGUMENT,
-             "more than %d traces", IDENTIFY_TRACES);
-    const parameters *p = &id->base->parameters;
-    recorded_trace *t = &id->traces[id->trace_count++];
-    SCOPED(csv_table_finish) csv_table table = {0};
-    *t = (recorded_trace){.file = strdup(file)};
-    if (t->file != NULL) {
-        TRY(csv_table_read(&table, file, 2, f));
-    } else {
-        return fault_no_memory(f);
-    }
-
-    t->rows = table.rows;
-    TRY(read_column(&table, "time", "s", true, columns, count, &t->time, f));
-    TRY(read_column(&table, "command", "V", true, columns, count, &t->command, f));
     int readings = 0;
+    TRY(read_column(table, "command", "V", said_heading("command", columns, count),
+                    GAPS_HELD, &t->command, f));
     for (int c = 0; c < CHANNELS; c++) {
         const signal_info *signal = &signal_table[identify_signals[c]];
-        TRY(read_column(&table, signal->name, signal->unit, false, columns, count,
+        TRY(read_column(table, signal->name, signal->unit,
+                        said_heading(signal->name, columns, count), GAPS_MISSING,
                         &t->reading[c], f));
-        if (t->reading[c] != NULL) {
+        if (isnan(first_reading(t, c))) {
+            free(t->reading[c]);
+            t->reading[c] = NULL;
+        } else {
             readings++;
         }
     }
@@ -273,34 +400,102 @@ status identify_add_trace(identification *id, const char *file, char *const *col
             f, STATUS_BAD_ARGUMENT, 1, 1,
             "%.300s:1: no reading to compare with, expected a column such as "
             "encoder[rad], tachometer[rad/s] or force_reading[N]",
-            file);
+            t->file);
     }
+    return STATUS_OK;
+}
+
+// Checks that the samples came at a rate that a rig can have.
+static status check_rate(const recorded_trace *t, fault *f)
+{
+    const parameter_info *rate = &parameter_table[PARAMETER_INDEX(control.rate)];
     if (!(t->time[t->rows - 1] > t->time[0])) {
         return fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
                                "%.300s:2: no time passes from the first row to the last",
-                               file);
+                               t->file);
     }
-    keep_samples(t, p->control.rate);
+    const double mean = (double)(t->rows - 1) / (t->time[t->rows - 1] - t->time[0]);
+    if (mean >= rate->minimum && mean <= rate->maximum) {
+        return STATUS_OK;
+    }
+    return fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
+                           "%.300s:2: by their times %zu rows take %.4g s, expected %g "
+                           "to %g rows a second, with times in s or their unit in the "
+                           "heading, such as time[ms]",
+                           t->file, t->rows, t->time[t->rows - 1] - t->time[0],
+                           rate->minimum, rate->maximum);
+}
+
+status identify_add_trace(identification *id, const char *file, char *const *columns,
+                          int count, fault *f)
+{
+    assert(id->trace_count <= IDENTIFY_TRACES);
+    FAULT_IF(id->trace_count == IDENTIFY_TRACES, f, STATUS_BAD_ARGUMENT,
+             "more than %d traces", IDENTIFY_TRACES);
+    TRY(check_columns(columns, count, f));
+    const parameters *p = &id->base->parameters;
+    recorded_trace *t = &id->traces[id->trace_count++];
+    SCOPED(csv_table_finish) csv_table table = {0};
+    *t = (recorded_trace){.file = strdup(file)};
+    if (t->file == NULL) {
+        return fault_no_memory(f);
+    }
+    TRY(csv_table_read(&table, file, 2, f));
+    TRY(csv_table_times(&table, said_heading("time", columns, count), p->control.rate,
+                        &t->clock, &t->time, f));
+    t->rows = t->table_rows = table.rows;
+    TRY(read_columns(t, &table, columns, count, f));
+    csv_table_left_out(&table, t->left_out, sizeof t->left_out);
+    TRY(check_rate(t, f));
+    TRY(keep_samples(t, f));
     guess_start(t, p);
     return weigh(t, p, f);
+}
+
+double identify_rate(const recorded_trace *t, double usual)
+{
+    const sample_clock *clock = &t->clock;
+    if (clock->period == 0) {
+        return usual;
+    }
+
+    // the usual one, if it is that but for the error of the estimate
+    const double error = (3 * clock->error + ROUNDING * clock->period) * usual;
+    if (fabs(clock->period * usual - 1) <= error) {
+        return usual;
+    }
+    return 1 / clock->period;
 }
 
 // --- a run under the recorded command --------------------------------------------------
 
 typedef struct playback_memory {
     const recorded_trace *trace;
+    double period; // of the rig [s]
 } playback_memory;
 
+static const char *start_playback(void *memory, const controller_setup *setup)
+{
+    playback_memory *m = memory;
+    m->period = setup->period;
+    return NULL;
+}
+
+// Gives the command whose row is the nearest to the sample, or the one before if none is
+// near.
 static void play_back(void *memory, const controller_input *in, controller_output *out)
 {
-    const recorded_trace *t = ((const playback_memory *)memory)->trace;
-    out->command = csv_table_at(t->time, t->command, t->rows, in->time + 1e-9, false);
+    const playback_memory *m = memory;
+    const recorded_trace *t = m->trace;
+    const double nearest = in->time + m->period / 2;
+    out->command = csv_table_at(t->time, t->command, t->rows, nearest, false);
 }
 
 static const controller playback = {.interface = CONTROLLER_INTERFACE,
                                     .name = "the recorded command",
                                     .modes = (const char *const[]){"playback", NULL},
                                     .memory_size = sizeof(playback_memory),
+                                    .start = start_playback,
                                     .sample = play_back};
 
 // Makes the scenario of a run under the recorded command, from the start in own[]. Its
@@ -311,6 +506,7 @@ static status playback_scenario(const identification *id, const recorded_trace *
                                 scenario *made, fault *f)
 {
     const sensor_parameters *sensor = &p->sensor;
+    const double rate = identify_rate(t, p->control.rate);
     const parameter_change changes[] = {
         {PARAMETER_INDEX(control.settings), .text = ""},
         {PARAMETER_INDEX(control.lock), .text = "none"},
@@ -327,12 +523,13 @@ static status playback_scenario(const identification *id, const recorded_trace *
         {PARAMETER_INDEX(sensor.accelerometer),
          sensor->accelerometer || t->reading[CHANNEL_ACCELEROMETER] != NULL},
         {PARAMETER_INDEX(control.law), LAW_OPEN_LOOP},
+        {PARAMETER_INDEX(control.rate), rate},
         {PARAMETER_INDEX(control.jitter), 0},
         {PARAMETER_INDEX(control.force_amplitude), 0},
         {PARAMETER_INDEX(control.force_limit), 0},
         {PARAMETER_INDEX(initial.angle), own[OWN_ANGLE]},
         {PARAMETER_INDEX(initial.velocity), own[OWN_VELOCITY]},
-        {PARAMETER_INDEX(run.duration), t->time[t->rows - 1] + 3 / p->control.rate},
+        {PARAMETER_INDEX(run.duration), t->time[t->rows - 1] + 3 / rate},
     };
     scenario from = *id->base;
     from.parameters = *p;
@@ -349,10 +546,8 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
     TRY(playback_scenario(id, t, &p, t->own, &fitted, f));
 
     // The sensors get their noise and steps back. The recording is played back from its
-    // file, shifted so that a sample takes the last row of its period, as keep_samples
-    // does.
+    // file, from its first sample on.
     fitted.parameters.sensor = p.sensor;
-    const double period = (1 - ROW_MARGIN) / p.control.rate;
     const parameter_change changes[] = {
         {PARAMETER_INDEX(sensor.encoder_offset),
          p.sensor.encoder_offset + t->own[OWN_OFFSET]},
@@ -360,7 +555,7 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
         {PARAMETER_INDEX(control.playback_file), .text = t->file},
         {PARAMETER_INDEX(control.playback_column), .text = "command"},
         {PARAMETER_INDEX(control.playback_hold), PLAYBACK_HOLD},
-        {PARAMETER_INDEX(control.playback_shift), -(t->begin + period)},
+        {PARAMETER_INDEX(control.playback_shift), -t->begin},
     };
     return scenario_with(&fitted, changes, sizeof changes / sizeof *changes, made, f);
 }

@@ -105,7 +105,7 @@ REAL(wall, motion_amplitude, "amplitude A of that motion, positive towards the a
 REAL(wall, motion_frequency, "frequency f of that motion, half a period of which a step takes",
     "Hz", 1e-3, 1e4, DEFAULT(1))
 REAL(wall, motion_time, "t0 of that motion: where a sine passes zero, where a step or a file "
-    "begins", "s", -1e6, 1e6, DEFAULT(0))
+    "begins", "s", -1e10, 1e10, DEFAULT(0))
 TEXT(wall, motion_file, "CSV with columns time [s] and place [m], towards the arm; between its "
     "rows a spline, before and after them the wall rests (wall.motion = file)", NULL)
 END_GROUP(wall_parameters)
@@ -185,7 +185,7 @@ TEXT(control, playback_file, "CSV with the command to play back and its times in
 TEXT(control, playback_column, "heading of the command's column there, name or name[unit]; V "
     "without a unit", "command")
 REAL(control, playback_shift, "by which the command comes later than it was recorded",
-    "s", -1e5, 1e5, DEFAULT(0))
+    "s", -1e10, 1e10, DEFAULT(0))
 CHOICE(control, playback_hold, "between two rows the earlier one's command, or on the straight "
     "line; outside the recording that of the first or last row",
     PLAYBACK_LINEAR, "hold|linear", DEFAULT(PLAYBACK_HOLD))

@@ -2,33 +2,61 @@
 // each sample by its time.
 #include "src/rig/external/played_command.h"
 
+#include <math.h>
 #include <stdlib.h>
 
-#include "src/base/csv_table.h"
+#include "src/base/extremes.h"
 #include "src/base/instant.h"
 #include "src/rig/controller_values.h"
 
-status played_command_open(played_command *p, const control_parameters *control, fault *f)
+#define CLOCK_ERROR 1e-3 // relative, of a recorder's clock
+
+// Corrects the times of a recording by the rig's clock where its samples came at the
+// rig's rate, or so many to a sample, but for the error of its own clock.
+static void correct_clock(played_command *p, const sample_clock *clock, double rate)
 {
+    if (clock->period == 0) {
+        return;
+    }
+    const double rows_a_sample = floor(1 / (rate * clock->period) + 0.5);
+    const double factor = 1 / (rate * clock->period * rows_a_sample);
+    if (rows_a_sample < 1 || fabs(factor - 1) > CLOCK_ERROR) {
+        return;
+    }
+    for (size_t i = 1; i < p->rows; i++) {
+        p->times[i] = p->times[0] + factor * (p->times[i] - p->times[0]);
+    }
+}
+
+status played_command_open(played_command *p, const parameters *known, fault *f)
+{
+    const control_parameters *control = &known->control;
     csv_table table;
+    sample_clock clock;
     *p = (played_command){.shift = control->playback_shift,
                           .linear = control->playback_hold == PLAYBACK_LINEAR};
 
     // a row is a constant command, which may be meant
     status code = csv_table_read(&table, control->playback_file, 1, f);
     if (code == STATUS_OK) {
-        const char *clock = csv_table_find(&table, "t") >= 0 ? "t" : "time";
-        p->rows = table.rows;
-        code = csv_table_times(&table, clock, &p->times, f);
+        code = csv_table_play(&table, control->rate, p->shift, known->run.duration,
+                              &clock, &p->times, p->told, f);
     }
     if (code == STATUS_OK) {
-        code = csv_table_numbers(&table, control->playback_column, "V", false,
+        p->rows = table.rows;
+        code = csv_table_numbers(&table, control->playback_column, "V", GAPS_HELD,
                                  &p->command, f);
     }
     csv_table_finish(&table);
 
     // a file with faults is a scenario with faults
-    if (code != STATUS_OK) {
+    if (code == STATUS_OK) {
+        correct_clock(p, &clock, control->rate);
+        p->ahead = (1 / control->rate - control->jitter) / 2;
+        if (clock.period > 0) {
+            p->ahead = smaller(p->ahead, clock.period / 2);
+        }
+    } else {
         played_command_close(p);
     }
     if (f != NULL && code != STATUS_OK && code != STATUS_NO_MEMORY) {
@@ -51,8 +79,11 @@ static void playback_sample(void *memory, const controller_input *in,
 {
     const played_command *p = *(played_command *const *)memory;
     const double then = in->time - p->shift;
-    out->command = csv_table_at(p->times, p->command, p->rows,
-                                then + instant_tolerance(then), p->linear);
+    double until = then + instant_tolerance(then);
+    if (!p->linear) {
+        until += p->ahead;
+    }
+    out->command = csv_table_at(p->times, p->command, p->rows, until, p->linear);
 }
 
 const controller playback_law =

@@ -18,7 +18,8 @@ static status read_measured(explorer_model *model, const char *path, fault *f)
     trace_init(&fresh, 1);
     status code = csv_table_read(&table, path, 1, f);
     if (code == STATUS_OK) {
-        code = measured_rows(&fresh, &table, NULL, -1, f);
+        const double rate = model->session.effective.parameters.control.rate;
+        code = measured_rows(&fresh, &table, rate, NULL, -1, f);
     }
     csv_table_finish(&table);
     if (code != STATUS_OK) {

@@ -10,16 +10,6 @@
 #include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
-void text_add(char *text, size_t size, const char *format, ...)
-{
-    const size_t used = strlen(text);
-    va_list list;
-    assert(used < size);
-    va_start(list, format);
-    vsnprintf(text + used, size - used, format, list);
-    va_end(list);
-}
-
 const char *text_cut(const char *text, const char *ends, char *word, size_t size)
 {
     const size_t length = strcspn(text, ends);

@@ -6,11 +6,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
+#include "src/base/words.h"
 
-// Appends to a text in `size` bytes as much as has room.
-void text_add(char *text, size_t size, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
 
 // Cuts the first word off a text, which one of `ends` ends; returns what follows, from
 // the next word on.
