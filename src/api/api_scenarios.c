@@ -389,7 +389,10 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
     if (!make_room_for_action(s)) {
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
     }
-    scenario_insert_action(
-        s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse, .added = true});
+    scenario_insert_action(s, (action){.time = time,
+                                       .kind = ACTION_PUSH,
+                                       .parameter = -1,
+                                       .value = impulse,
+                                       .added = true});
     return update_title(handle, error);
 }

@@ -183,6 +183,7 @@ def test_an_interrupted_loop_goes_on():
 def test_states_are_bytes():
     loop = Loop(Scenario("compare/hybrid"))
     loop.step_until(0.3)
+    assert loop.signals["force"] == loop["force"] and repr(loop).startswith("<Loop at ")
     state = loop.save_state()
     assert isinstance(state, bytes)
     loop.step_until(0.4)
@@ -262,14 +263,54 @@ def test_figures_show_themselves():
     assert run.png(100)[:8] == b"\x89PNG\r\n\x1a\n" and len(run.png(300)) > len(run.png(100))
     with pytest.raises(RuntimeError, match="dpi"):
         run.png(5)
-    with pytest.raises(RuntimeError, match="controller"):
-        Scenario(FIRST).run(controller=lambda reading: 1).svg()
+    with pytest.raises(RuntimeError, match="rows"):
+        Scenario(FIRST).run(rows=False).svg()
+    with pytest.raises(RuntimeError, match="loop"):
+        Loop(Scenario(FIRST)).run().svg()
+
+
+def test_a_law_is_drawn_as_it_ran():
+    if impactlab.program() is None:
+        pytest.skip("the program is not there")
+    scenario = Scenario("compare/hybrid").push_at(0.4, 1e-3)
+    run = scenario.run(controller=lambda read: {
+        "command": 1 + 0.1 * (1 - read.force), "desired_angle": read.encoder / 3,
+        "calculated_force": math.nan if read.time < 0.1 else read.force})
+    for one in (run, pickle.loads(pickle.dumps(run))):
+        assert one._drawn("csv").decode() == run.csv
+        assert "Hybrid" in one.svg() and "with control.law" not in one.svg()
 
 
 def test_frames():
     pytest.importorskip("pandas")
-    frame = Scenario(FIRST).run().to_dataframe()
+    run = Scenario(FIRST).run()
+    frame = run.to_dataframe()
     assert frame.attrs["units"]["force"] == "N" and frame["force"].max() > 1
+    assert len(frame) == len(run.time) and not frame.index.is_unique
+
+    # on a grid an instant is there once, and has what the run has there last
+    grid = run.to_dataframe(every=2e-3, events=True)
+    assert np.array_equal(grid.index, 2e-3 * np.arange(501))
+    last = frame["force"][~frame.index.duplicated(keep="last")]
+    there = [time for time in last.index if time in grid.index]
+    assert len(there) > 400 and np.array_equal(grid["force"][there], last[there])
+    told = [word for words in grid["event"] for word in words.split("+") if word]
+    assert told == [event.kind for event in run.events]
+    first = grid.index[grid["event"] != ""][0]
+    assert first - 2e-3 < run.first_contact_s <= first
+    for wrong in (0, -1, math.nan):
+        with pytest.raises(Error, match="more than 0"):
+            run.to_dataframe(every=wrong)
+    empty = Scenario(FIRST).run(rows=False).to_dataframe(every=0.1, events=True)
+    assert len(empty) == 0
+
+
+def test_datasets_have_units():
+    pytest.importorskip("xarray")
+    data = Scenario(FIRST).run().to_xarray(every=1e-3)
+    assert data.sizes["time"] == 1001 and data.force.attrs["units"] == "N"
+    assert data.time.attrs["units"] == "s" and data.attrs["status"] == "ok"
+    assert "force_reading" not in data and float(data.force.max()) > 1
 
 
 def test_code_is_not_run_unasked(tmp_path):
@@ -332,14 +373,49 @@ def test_groups_are_of_their_scenario():
 
 
 @pytest.mark.parametrize("way", ["copy", "deepcopy", "pickle"])
-def test_loops_and_runs_say_that_they_cannot_be_copied(way):
-    scenario = Scenario(FIRST)
-    loop, run = Loop(scenario), scenario.run()
-    for one, word in ((loop, "save_state"), (run, "scenario")):
-        with pytest.raises(TypeError, match=f"neither copied nor pickled: .*{word}"):
-            COPIES[way](one)
+def test_loops_say_that_they_cannot_be_copied(way):
+    loop = Loop(Scenario(FIRST))
+    with pytest.raises(TypeError, match="neither copied nor pickled: .*save_state"):
+        COPIES[way](loop)
     gc.collect()
-    assert loop.step() > 0 and len(run.time) > 1000
+    assert loop.step() > 0
+
+
+def made_runs():
+    """A run of each origin."""
+    scenario = Scenario("compare/hybrid").push_at(0.3, 1e-3)
+    loop = Loop(scenario, command=True, rows=True)
+    loop.command(1.5)
+    loop.step_until(0.4)
+    with pytest.raises(Error) as raised:
+        scenario.run(controller=lambda reading: 1.0 if reading.time < 0.4 else math.nan)
+    return [scenario.run(), scenario.run(rows=False), loop.run(), raised.value.run,
+            scenario.run(controller=lambda reading: 1 + reading.force)]
+
+
+@pytest.mark.parametrize("way", ["copy", "deepcopy", "pickle"])
+def test_runs_and_batches_are_copied_and_pickled(way):
+    for run in made_runs():
+        other = COPIES[way](run)
+        mine, its = json.loads(run.json), json.loads(other.json)
+        # expectations are of the file, and not in a pickle
+        assert {key: its.get(key) for key in mine if key != "expectations"} == \
+               {key: mine[key] for key in mine if key != "expectations"}
+        assert repr(other) == repr(run) and other.csv == run.csv
+        assert other.events == run.events and np.array_equal(other.angles, run.angles)
+        del run
+        gc.collect()
+        assert other["force"].sum() >= 0
+    batch = Scenario(FIRST).batch({"motor.voltage": [1, 2, -5]})
+    other = COPIES[way](batch)
+    assert np.array_equal(other["peak_force_N"], batch["peak_force_N"], equal_nan=True)
+    assert repr(other) == repr(batch) == "<Batch of 3 runs, 3 ok, over motor.voltage>"
+
+
+def test_a_damaged_pickle_is_refused():
+    data = pickle.dumps(Scenario(FIRST).run())
+    with pytest.raises(Error, match="damaged"):
+        pickle.loads(data[:-2000] + bytes([data[-2000] ^ 1]) + data[-1999:])
 
 
 def test_errors_are_pickled_without_their_run():

@@ -39,9 +39,9 @@ class Loop(Owner):
         self._error = ErrorStruct()
         flags = (COMMAND if command else 0) | (KEEP_ROWS if rows else 0)
         self._callbacks = Callbacks()
-        own = scenario.copy()
-        self._callbacks.listen(own)
-        call("loop_create", byref(self._handle), own._handle, flags)
+        self._scenario = scenario.copy()
+        self._callbacks.listen(self._scenario)
+        call("loop_create", byref(self._handle), self._scenario._handle, flags)
 
     # what is called at every step has the loop's own place for errors
 
@@ -144,4 +144,4 @@ class Loop(Owner):
         """What the loop has come to so far, as a run."""
         handle = c_void_p()
         self._call("loop_run", byref(handle))
-        return Run._of(handle)
+        return Run._of(handle, self._scenario)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import ctypes
 import html
+import json
+import math
 import os
 import subprocess
 import tempfile
@@ -30,8 +32,15 @@ class Source(Protocol):
     _handle: c_void_p
 
     @property
+    def title(self) -> str:
+        """What it shows."""
+
+    @property
     def yaml(self) -> str:
         """The scenario's file."""
+
+    def copy(self) -> Any:
+        """A scenario of its own."""
 
 
 class Signal(NamedTuple):
@@ -98,18 +107,24 @@ def _view(owner: Any, address: Optional[int], rows: int, columns: int) -> np.nda
 
 
 class Run(Owner, Quantities):
-    """A run. `run["force"]` is a signal as an array, `run.peak_force_N` one of its quantities."""
+    """A run. `run["force"]` is a signal as an array, `run.peak_force_N` one of its quantities.
+
+    It does not change, so that a copy is the run itself; a pickle holds all of it, for the same
+    version on the same kind of machine.
+    """
 
     _kind = "run"
-    _instead = "its scenario can, and gives the same run again"
     _destroy = staticmethod(lib.impactlab_run_destroy)
-    _scenario: Optional[Source] = None
+    _scenario: Source
+    _answers: Optional[List[Dict[str, float]]] = None  # of a controller
+    _undrawn = ""  # why the program cannot draw it
 
     def __init__(self) -> None:
         raise TypeError("a run comes from scenario.run() or loop.run()")
 
     @classmethod
-    def _create(cls, scenario: Source, flags: int, callbacks: Callbacks, law: Any = None) -> "Run":
+    def _create(cls, scenario: Source, flags: int, callbacks: Callbacks, law: Any = None,
+                answers: Optional[List[Dict[str, float]]] = None) -> "Run":
         """A run of a scenario that nobody else has."""
         run = cls.__new__(cls)
         error = ErrorStruct()
@@ -119,7 +134,8 @@ class Run(Owner, Quantities):
                                                  None if law is None else byref(law), None,
                                                  byref(error))
         callbacks.tell()
-        run._scenario = scenario if law is None and flags else None
+        run._scenario, run._answers = scenario, answers
+        run._undrawn = "" if flags else "a figure is drawn of a run with rows"
         run._read()
         if code != 0:
             failure = error_of(error)
@@ -128,11 +144,23 @@ class Run(Owner, Quantities):
         return run
 
     @classmethod
-    def _of(cls, handle: c_void_p) -> "Run":
+    def _of(cls, handle: c_void_p, scenario: Source) -> "Run":
         run = cls.__new__(cls)
-        run._handle = handle
+        run._handle, run._scenario = handle, scenario
+        run._undrawn = "a figure is drawn of a scenario's run, not of a loop's"
         run._read()
         return run
+
+    def __copy__(self) -> "Run":
+        return self
+
+    def __deepcopy__(self, memo: Any) -> "Run":
+        return self
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        saved = ctypes.create_string_buffer(lib.impactlab_run_saved_size(self._handle))
+        self._call("run_save", saved, len(saved))
+        return _restored, (type(self), self._scenario, saved.raw, self._answers, self._undrawn)
 
     def _read(self) -> None:
         self._quantities = np.full(len(QUANTITIES), np.nan)
@@ -231,15 +259,54 @@ class Run(Owner, Quantities):
         """What `impactlab run --csv` writes."""
         return library.take_text("run_csv", self._handle)
 
-    def to_dataframe(self) -> Any:
-        """All recorded signals as a pandas DataFrame over time; units are in `frame.attrs`."""
+    def _columns(self, every: Optional[float]) -> Dict[str, np.ndarray]:
+        """The signals that were recorded, the time first: of all rows, or on a uniform grid [s]."""
+        if every is None:
+            columns = {name: self[name] for name in SIGNALS}
+        else:
+            interval, count = number(every, "every"), c_size_t()
+            self._call("run_grid", interval, None, 0, byref(count))
+            grid = np.empty((count.value, len(SIGNALS)))
+            self._call("run_grid", interval, grid.ctypes.data_as(POINTER(c_double)), len(grid),
+                       byref(count))
+            columns = dict(zip(SIGNALS, grid.T))
+        return {name: values for name, values in columns.items()
+                if name == "time" or not np.isnan(values).all()}
+
+    def _happened(self, times: np.ndarray) -> List[str]:
+        """What happened at each of the rows: events since the instant before it."""
+        words = [""] * len(times)
+        for event in self.events if words else []:
+            first = min(np.searchsorted(times, event.time - 1e-12), len(times) - 1)
+            last = np.searchsorted(times, times[first], "right") - 1
+            words[last] += "+" * bool(words[last]) + event.kind
+        return words
+
+    def to_dataframe(self, every: Optional[float] = None, events: bool = False) -> Any:
+        """All recorded signals as a pandas DataFrame over time; units are in `frame.attrs`.
+
+        Rows are those of the run, of which there are several at the instant of an event; or, with
+        `every` [s], one at each of 0, every, 2 every ... With `events` a column `event` tells what
+        happened since the row before, such as "impact+contact".
+        """
         import pandas
-        columns = {name: self[name] for name in SIGNALS if name != "time"}
-        frame = pandas.DataFrame({name: values for name, values in columns.items()
-                                  if len(values) and not np.isnan(values).all()},
-                                 index=pandas.Index(self.time, name="time"))
-        frame.attrs["units"] = {name: SIGNALS[name].unit for name in frame.columns}
+        columns = self._columns(every)
+        times = columns.pop("time")
+        frame = pandas.DataFrame(columns, index=pandas.Index(times, name="time"))
+        frame.attrs["units"] = {name: SIGNALS[name].unit for name in columns}
+        if events:
+            frame["event"] = self._happened(times)
         return frame
+
+    def to_xarray(self, every: Optional[float] = None) -> Any:
+        """The same as an xarray Dataset, with units and descriptions as attributes."""
+        import xarray
+        columns = {name: ("time", values, {"units": SIGNALS[name].unit,
+                                           "long_name": SIGNALS[name].description})
+                   for name, values in self._columns(every).items()}
+        return xarray.Dataset(columns, coords={"time": columns.pop("time")},
+                              attrs={"title": self._scenario.title, "status": self.status,
+                                     "source": f"impactlab {library.version()}"})
 
     def svg(self) -> str:
         """The figure that `impactlab run --plot` draws, as the text of an SVG file."""
@@ -251,31 +318,57 @@ class Run(Owner, Quantities):
 
     def _repr_html_(self) -> Optional[str]:
         """The figure as an image with its data, for Jupyter: ids of its own, whatever page it is in."""
-        if library.program() is None or self._scenario is None:
+        if library.program() is None or self._undrawn:
             return None
         data = base64.b64encode(self._drawn("svg")).decode()
         return f'<img src="data:image/svg+xml;base64,{data}" alt="{html.escape(repr(self))}">'
 
     def _drawn(self, kind: str, *options: str) -> bytes:
-        """The bytes of the figure that the program draws; RuntimeError with its reason."""
+        """The bytes of the figure that the program draws, or with "csv" of the rows that it writes;
+        RuntimeError with its reason."""
         program = library.program()
-        if program is None or self._scenario is None:
-            raise RuntimeError("no program impactlab is there to draw the run" if program is None else
-                               "a figure is drawn of a scenario's own run, without a controller")
+        if program is None or self._undrawn:
+            raise RuntimeError(self._undrawn or "no program impactlab is there to draw the run")
         with tempfile.TemporaryDirectory() as folder:
-            scenario, figure = os.path.join(folder, "run.yaml"), os.path.join(folder, "run." + kind)
-            with open(scenario, "w", encoding="utf-8") as file:
-                file.write(self._scenario.yaml)
-            said = subprocess.run([program, "run", scenario, "--quiet", "--plot", figure, *options],
-                                  check=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            path, figure = os.path.join(folder, "run.yaml"), os.path.join(folder, "run." + kind)
+            scenario, environment = self._scenario.yaml, {**os.environ}
+            if self._answers is not None:
+                environment["IMPACTLAB_ANSWERS"] = os.path.join(folder, "answers")
+                scenario = self._with_answers(environment["IMPACTLAB_ANSWERS"])
+                options = ("--allow-code", *options)
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(scenario)
+            said = subprocess.run([program, "run", path, "--quiet", "--csv" if kind == "csv" else
+                                   "--plot", figure, *options], check=False, env=environment,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
             if not os.path.exists(figure):
                 raise RuntimeError(said.stderr.decode(errors="replace").strip())
             with open(figure, "rb") as drawn:
                 return drawn.read()
 
+    def _with_answers(self, path: str) -> str:
+        """The scenario's file with a program as its law that gives what the controller answered."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.writelines(json.dumps(answer) + "\n" for answer in self._answers or [])
+        replayed = self._scenario.copy()
+        replayed.set({"control.law": "process", "control.command":
+                      'while read -r q && read -r a <&3; do echo "$a"; done 3<"$IMPACTLAB_ANSWERS"'})
+
+        # the first line is the title, which the run has without these changes
+        return self._scenario.yaml.partition("\n")[0] + "\n" + replayed.yaml.partition("\n")[2]
+
     def __repr__(self) -> str:
         return (f"<Run {self.status}: first contact {self.first_contact_s:.6g} s, peak force "
                 f"{self.peak_force_N:.6g} N, {len(self.time)} rows>")
+
+
+def _restored(kind: Any, scenario: Source, saved: bytes, answers: Any, undrawn: str) -> Run:
+    """What a pickle of a run holds as one."""
+    run: Run = kind.__new__(kind)
+    call("run_restore", byref(run._handle), scenario._handle, saved, len(saved))
+    run._scenario, run._answers, run._undrawn = scenario, answers, undrawn
+    run._read()
+    return run
 
 
 class Batch:
@@ -295,6 +388,10 @@ class Batch:
 
     def __getitem__(self, key: str) -> np.ndarray:
         return self._quantities[:, _INDEX[key]]
+
+    def __repr__(self) -> str:
+        ok = self.status.count("ok")
+        return f"<Batch of {len(self)} runs, {ok} ok, over {', '.join(self.parameters)}>"
 
     def to_dataframe(self) -> Any:
         """Parameters, status and quantities as a pandas DataFrame, a row a run."""
@@ -328,12 +425,16 @@ def run_with(scenario: Source, flags: int, function: Callable[[Any], Any]) -> Ru
     if not callable(function):
         raise TypeError(f"expected a function as the controller, not {type(function).__name__}")
 
+    answers: List[Dict[str, float]] = []
+
     def sample(memory: Any, reading: Any, answer: Any) -> None:
         try:
             # a copy, as the function may keep it; without a command the run ends
             if not callbacks.raised:
-                _take_answer(answer.contents,
-                             function(library.InputStruct.from_buffer_copy(reading.contents)))
+                out = answer.contents
+                _take_answer(out, function(library.InputStruct.from_buffer_copy(reading.contents)))
+                answers.append({name: getattr(out, name) for name in ANSWERS
+                                if math.isfinite(getattr(out, name))})
         except BaseException as failure:
             callbacks.raised.append(failure)
 
@@ -341,4 +442,4 @@ def run_with(scenario: Source, flags: int, function: Callable[[Any], Any]) -> Ru
     law = library.ControllerStruct(interface=library.CONTROLLER_INTERFACE, name=b"python",
                                    modes=modes, memory_size=ctypes.sizeof(c_void_p),
                                    sample=library.SampleFunction(sample))
-    return Run._create(scenario, flags, callbacks, law)
+    return Run._create(scenario, flags, callbacks, law, answers)
