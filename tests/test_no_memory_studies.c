@@ -2,6 +2,7 @@
 // studies, parts of a sweep, and the printed model.
 
 #include "src/run/export.h"
+#include "src/study/batch.h"
 #include "src/study/calibrate.h"
 #include "src/study/convergence.h"
 #include "src/study/robust/robust.h"
@@ -181,6 +182,35 @@ static status run(scenario *s, FILE *out)
     return code;
 }
 
+// --- what a run of a batch asks for ----------------------------------------------------
+
+// The batch's scenario with a voltage of the run's own.
+static status with_voltage(void *base, size_t i, scenario *made, fault *f)
+{
+    (void)f;
+    *made = *(const scenario *)base;
+    made->parameters.motor.voltage = 4 + 1e-3 * (double)i;
+    return STATUS_OK;
+}
+
+// How often a batch of so many runs on one thread asks for memory, a descriptor or a
+// thread.
+static long requests_of_batch(scenario *base, size_t runs)
+{
+    summary *summaries = calloc(runs, sizeof *summaries);
+    const batch all = {.context = base,
+                       .count = runs,
+                       .make = with_voltage,
+                       .summaries = summaries};
+    fault f = {0};
+    const long before = requests;
+    assert_int_equal(batch_run(&all, 1, &f), STATUS_OK);
+    const long asked = requests - before;
+    assert_int_equal(summaries[runs - 1].status, STATUS_OK);
+    free(summaries);
+    return asked;
+}
+
 // --- the tests -------------------------------------------------------------------------
 
 TEST(a_name_means_the_same_scenario)
@@ -217,6 +247,22 @@ TEST(runs_of_the_printed_model)
 {
     try_with_scenario(run, "arm.model=printed");
     try_with_scenario(run, "arm.model=printed control.law=hybrid");
+}
+
+// Where a run of two links ends in a batch, the next one takes over what it had.
+TEST(a_run_more_of_a_batch_asks_for_nothing)
+{
+    static const char *const arms[] = {"", "arm.damping_ratio=0.01",
+                                       "wall.restitution=0.5", "arm.hub_joint=spring"};
+    for (size_t i = 0; i < sizeof arms / sizeof *arms; i++) {
+        scenario s;
+        assert_int_equal(make_scenario(&s, arms[i]), STATUS_OK);
+        const long few = requests_of_batch(&s, 2 * RUN_TOGETHER);
+        const long many = requests_of_batch(&s, 6 * RUN_TOGETHER);
+        fail_if(many != few, "%s: %ld runs more asked %ld times more", arms[i],
+                4L * RUN_TOGETHER, many - few);
+        scenario_finish(&s);
+    }
 }
 
 REFUSING_MAIN(short_run, refuse_in_folder, leave_folder)

@@ -46,9 +46,11 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
     *r = (recording){.scenario = s,
                      .result = result,
                      .options = options,
-                     .now = s->parameters,
-                     .begun_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
-                     .begun_at = clock_seconds(CLOCK_MONOTONIC)};
+                     .now = s->parameters};
+    if (!options->untimed) {
+        r->begun_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+        r->begun_at = clock_seconds(CLOCK_MONOTONIC);
+    }
 
     // who may stop it: the whole program, its monitor, or a flag of the caller
     r->stop = (stop_request){.flag = &stop_everything,
@@ -96,8 +98,11 @@ void recording_end(recording *r, status code, const fault *f)
         result->trace.row_count = 0;
     }
     recording_tell_fault(&result->summary, code, f);
-    result->summary.cpu_time_s = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - r->begun_cpu;
-    result->summary.wall_time_s = clock_seconds(CLOCK_MONOTONIC) - r->begun_at;
+    if (!r->options->untimed) {
+        summary *s = &result->summary;
+        s->cpu_time_s = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - r->begun_cpu;
+        s->wall_time_s = clock_seconds(CLOCK_MONOTONIC) - r->begun_at;
+    }
     if (result->history.forces.reserved == 0 && !r->options->keep_forces) {
         shared_array_finish(&result->history.forces); // needed until here only
     }
@@ -114,6 +119,27 @@ size_t recording_most_rows(size_t expected)
     return 16 * expected + 1000000;
 }
 
+// Refuses rows that take more than the machine's memory.
+static status check_room(const recording *r, double rows, int angle_count, fault *f)
+{
+    const parameters *p = &r->scenario->parameters;
+    const double bytes = rows * (double)trace_row_bytes(angle_count), gigabyte = 1e9;
+    const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    if (bytes <= memory) {
+        return STATUS_OK;
+    }
+
+    const char *two = "";
+    if (r->rig != NULL) {
+        two = " and two at every sample of control.rate";
+    }
+    return fault_set_at(f, STATUS_BAD_SCENARIO, "method.step",
+                        "rows every method.step = %g s%s over run.duration = %g s take "
+                        "%.3g GB of memory, and this machine has %.3g GB",
+                        p->method.step, two, p->run.duration, bytes / gigabyte,
+                        memory / gigabyte);
+}
+
 status recording_open_trace(recording *r, int angle_count, fault *f)
 {
     assert(angle_count > 0);
@@ -123,18 +149,8 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     // a row for each step, and two for an event or a sample
     const double samples = r->rig != NULL ? p->run.duration * p->control.rate : 0;
     const double rows = ROWS_OF_EVENTS + p->run.duration / p->method.step + 2 * samples;
-    const double bytes = rows * (double)trace_row_bytes(angle_count), gigabyte = 1e9;
-    const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-
-    // more than the machine's memory is refused
-    if ((expected > 0 || r->options->keep_trace) && bytes > memory) {
-        const char *two =
-            r->rig != NULL ? " and two at every sample of control.rate" : "";
-        return fault_set_at(
-            f, STATUS_BAD_SCENARIO, "method.step",
-            "rows every method.step = %g s%s over run.duration = %g s take %.3g GB "
-            "of memory, and this machine has %.3g GB",
-            p->method.step, two, p->run.duration, bytes / gigabyte, memory / gigabyte);
+    if (expected > 0 || r->options->keep_trace) {
+        TRY(check_room(r, rows, angle_count, f));
     }
 
     // a trace that may move as it grows; if there is no memory, adding rows will say so

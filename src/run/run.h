@@ -27,11 +27,11 @@ typedef struct side_by_side side_by_side;
 
 enum { RUN_TOGETHER = 64 }; // scenarios are a good number
 
-// Runs several scenarios, summaries only: each result is the same to the last bit as that
-// of a run by itself but for its computing time, which is an equal share. Where *abandon
-// becomes true those that are not through end with STATUS_STOPPED; abandon may be NULL.
-// *storage is NULL before the first call and kept for the next one; without memory for it
-// they go one after the other.
+// Runs several scenarios, summaries without rows and events: each result is the same to
+// the last bit as that of a run by itself but for its computing time, which it does not
+// have. Where *abandon becomes true those that are not through end with STATUS_STOPPED;
+// abandon may be NULL. *storage is NULL before the first call and kept for the next one;
+// without memory for it they go one after the other.
 void run_together(const scenario *scenarios, int count, const atomic_bool *abandon,
                   run_result *results, side_by_side **storage);
 

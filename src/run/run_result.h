@@ -66,6 +66,7 @@ typedef struct run_options {
     int (*ask)(
         void *context); // asked whether the run is to end, of a stop_request; NULL: not
     void *ask_context;
+    bool untimed; // no clock is read for it: it is one of many that are timed together
     bool stepped; // it can go on where it was stopped: it is asked between steps only
     size_t rows_expected; // if not 0, rows and events stay where they are and can be
                           // shared, and the result has a history; needs keep_trace

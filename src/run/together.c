@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/clock.h"
 #include "src/run/arm_run.h"
 #include "src/run/recording.h"
 #include "src/engines/motion_create.h"
@@ -29,6 +28,7 @@ typedef struct side_run {
     int kind;            // the kind of that step: steps of one kind go together
     motion *motion;      // storage of the run before it, to be used again; NULL: none
     shared_array forces; // the same of that run's forces
+    shared_array events; // and of its events
 } side_run;
 
 struct side_by_side {
@@ -43,6 +43,17 @@ struct side_by_side {
     taylor_group series; // of the runs that step together
 };
 
+// Puts the storage of a run's events aside, unless an earlier one is there.
+static void keep_events(side_run *one)
+{
+    shared_array events = trace_take_events(&one->recording.result->trace);
+    if (one->events.capacity == 0) {
+        one->events = events;
+    } else {
+        shared_array_finish(&events);
+    }
+}
+
 // Ends a run and puts its storage aside for the next one in its place.
 static void end_run(side_run *one, status failed)
 {
@@ -53,6 +64,7 @@ static void end_run(side_run *one, status failed)
     }
     one->forces = *forces;
     memset(forces, 0, sizeof *forces);
+    keep_events(one);
     recording_end(&one->recording, failed, &one->fault);
 }
 
@@ -74,7 +86,9 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
     // the arm, in the motion's storage
     motion *spare = one->motion;
     one->motion = NULL;
-    return arm_run_open(&one->run, &one->recording, spare, &one->fault);
+    TRY(arm_run_open(&one->run, &one->recording, spare, &one->fault));
+    trace_give_events(&result->trace, &one->events);
+    return STATUS_OK;
 }
 
 // Prepares the lane of a run's next step in a series, if that step can be computed so.
@@ -235,6 +249,7 @@ static side_by_side *open_storage(side_by_side **storage)
         for (int place = 0; *storage != NULL && place < IN_HAND; place++) {
             (*storage)->in_hand[place].motion = NULL;
             shared_array_init(&(*storage)->in_hand[place].forces, sizeof(force_step));
+            shared_array_init(&(*storage)->in_hand[place].events, sizeof(event));
         }
     }
     return *storage;
@@ -245,6 +260,7 @@ void side_by_side_destroy(side_by_side *storage)
     for (int place = 0; storage != NULL && place < IN_HAND; place++) {
         motion_destroy(storage->in_hand[place].motion);
         shared_array_finish(&storage->in_hand[place].forces);
+        shared_array_finish(&storage->in_hand[place].events);
     }
     free(storage);
 }
@@ -253,9 +269,7 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
                   run_result *results, side_by_side **storage)
 {
     assert(count >= 0);
-    const run_options options = {.abandon = abandon};
-    const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
-                 at = clock_seconds(CLOCK_MONOTONIC);
+    const run_options options = {.abandon = abandon, .untimed = true};
 
     // without vectors, or without memory: one run after the other
     side_by_side *group = taylor_width() > 1 ? open_storage(storage) : NULL;
@@ -278,13 +292,5 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
     }
     while (group->waiting_count > 0) {
         step_together(group);
-    }
-
-    // time cannot be told apart by runs: each gets an equal share
-    const double cpu_share = (clock_seconds(CLOCK_THREAD_CPUTIME_ID) - cpu) / count;
-    const double share = (clock_seconds(CLOCK_MONOTONIC) - at) / count;
-    for (int i = 0; i < count; i++) {
-        results[i].summary.cpu_time_s = cpu_share;
-        results[i].summary.wall_time_s = share;
     }
 }

@@ -157,6 +157,26 @@ status trace_add_event(trace *t, event e)
     return STATUS_OK;
 }
 
+shared_array trace_take_events(trace *t)
+{
+    const shared_array taken = t->arrays[TRACE_EVENTS];
+    shared_array_init(&t->arrays[TRACE_EVENTS], sizeof(event));
+    t->events = NULL;
+    t->event_count = 0;
+    return taken;
+}
+
+void trace_give_events(trace *t, shared_array *storage)
+{
+    if (t->event_count > 0) {
+        return;
+    }
+    shared_array_finish(&t->arrays[TRACE_EVENTS]);
+    t->arrays[TRACE_EVENTS] = *storage;
+    t->events = storage->base;
+    shared_array_init(storage, sizeof(event));
+}
+
 size_t trace_rows_until(const trace *t, double time)
 {
     assert(!isnan(time));

@@ -86,6 +86,14 @@ status trace_add_row(trace *t, const sample *row, const double *angles,
                      const double *velocities);
 status trace_add_event(trace *t, event e);
 
+// Takes the storage of a trace's events away, which is without events then; an array that
+// can be given to another trace and is finished at last.
+shared_array trace_take_events(trace *t);
+
+// Gives a trace such storage in the place of its own, unless it has events already.
+// *storage is empty afterwards, or as before.
+void trace_give_events(trace *t, shared_array *storage);
+
 // Forgets all rows but the last one.
 void trace_keep_last_row(trace *t);
 
