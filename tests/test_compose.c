@@ -121,7 +121,7 @@ TEST(test_a_narrow_screen_reaches_the_side)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_shows_at(&ex, 60, 20, "\u25b81      N");
     press(&ex, "<Tab>");
-    assert_shows_at(&ex, 60, 20, "parameters (Tab: values");
+    assert_shows_at(&ex, 60, 20, "knobs (/ all");
     press(&ex, "<Tab>");
     assert_shows_at(&ex, 60, 20, "hub_angle");
     press(&ex, "<Tab>");

@@ -184,6 +184,8 @@ static void escape(explorer *ex)
         filter[0] = '\0';
     } else if (ex->view.side.panel == PANEL_SWEEP) {
         explorer_carry_out(ex, "sweep off");
+    } else if (ex->view.side.panel == PANEL_PARAMETERS && ex->view.parameters.all) {
+        ex->view.parameters.all = false;
     } else {
         ex->view.mark.set = false;
     }

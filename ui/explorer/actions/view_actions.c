@@ -69,6 +69,7 @@ static void fold_all(parameter_list *list, bool folded)
 bool act_fold(explorer_view *view, explorer_input *input, const char *argument)
 {
     parameter_list *list = &view->parameters;
+    list->all = true;
     if (strcmp(argument, "all") == 0) {
         fold_all(list, true);
         return true;

@@ -8,6 +8,7 @@
 enum {
     LEAST_VALUE = 12, // cells for a value before its name is cut
     PATH_ROOM = 37,   // cells for path and value of a line that has a slider
+    KNOB_ROOM = 23,   // the same of a knob
     LEAST_SLIDER = 5, // cells of it
     MOST_SLIDER = 24
 };
@@ -78,9 +79,9 @@ static int fit_value(char *shown, size_t size, int most, const char *value,
 }
 
 // The slider's place at the end of a line, of no width where there is no room for it.
-static area slider_area(area line)
+static area slider_area(area line, bool is_knob)
 {
-    int width = line.width - PATH_ROOM;
+    int width = line.width - (is_knob ? KNOB_ROOM : PATH_ROOM);
     if (width < LEAST_SLIDER) {
         width = 0;
     }
@@ -118,6 +119,24 @@ static ink name_ink(const explorer_model *model, int parameter, bool inert)
     return INK_TEXT;
 }
 
+// Whether the knobs are shown, and not all parameters.
+static bool shows_knobs(const explorer_view *view)
+{
+    return parameter_list_is_brief(&view->parameters,
+                                   view->filters.text[PANEL_PARAMETERS]);
+}
+
+// The name of a parameter in so many cells: without its group, which the heading has; of
+// a knob with it where that has room.
+static const char *name_in_list(int parameter, bool is_knob, int room)
+{
+    const char *path = parameter_table[parameter].path;
+    if (is_knob && (int)strlen(path) <= room) {
+        return path;
+    }
+    return strchr(path, '.') + 1;
+}
+
 // Name, value and unit in a line, with a slider behind them where there is room.
 static void draw_parameter(const explorer_model *model, const explorer_view *view,
                            layout *lay, screen *s, area a, const parameters *p,
@@ -131,7 +150,8 @@ static void draw_parameter(const explorer_model *model, const explorer_view *vie
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_LINES, parameter, a});
 
     // a slider, and what it leaves
-    const area slider = slider_area(a);
+    const bool is_knob = shows_knobs(view);
+    const area slider = slider_area(a, is_knob);
     int room = a.width;
     if (slider.width > 0) {
         room -= slider.width + 1;
@@ -148,12 +168,12 @@ static void draw_parameter(const explorer_model *model, const explorer_view *vie
         parameter_format(p, parameter, value, sizeof value);
     }
 
-    // the name without its group, which the heading has, and the value at the end
-    const char *name = strchr(info->path, '.') + 1;
-    const int name_width = (int)strlen(name) + 3;
+    // the value at the end, and before it the name
+    const char *leaf = strchr(info->path, '.') + 1;
     const int length =
-        fit_value(shown, sizeof shown, room - name_width, value, info->unit);
+        fit_value(shown, sizeof shown, room - (int)strlen(leaf) - 3, value, info->unit);
     const int value_at = room - length;
+    const char *name = name_in_list(parameter, is_knob, value_at - 2);
     screen_text(s, a.x + 1, a.y, value_at - 2, name_ink(model, parameter, inert), name);
     screen_text(s, a.x + value_at, a.y, length, k.knob, shown);
 }
@@ -173,6 +193,11 @@ static void draw_heading(const explorer_view *view, layout *lay, screen *s, area
                          int first)
 {
     char name[PARAMETER_NAME];
+    layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, first, a});
+    if (shows_knobs(view)) {
+        area_print(s, a, INK_EVENT, "\u25b8 all %d", parameter_count);
+        return;
+    }
     const bool filtered = view->filters.text[PANEL_PARAMETERS][0] != '\0';
     const bool folded = view->parameters.folded[first] && !filtered;
     parameter_group_name(first, name, sizeof name);
@@ -182,7 +207,6 @@ static void draw_heading(const explorer_view *view, layout *lay, screen *s, area
     } else {
         area_print(s, a, INK_EVENT, "\u25be %s", name);
     }
-    layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, first, a});
 }
 
 // The line below the selected parameter: its slider between the ends of its range, or the
@@ -208,9 +232,11 @@ static void draw_parameters_frame(const explorer_view *view, screen *s, area a)
 {
     enum { WIDE = 46 };
     const char *filter = view->filters.text[PANEL_PARAMETERS];
-    char title[LINE_TEXT + 32] = "parameters (Tab: values, / filters)";
+    char title[LINE_TEXT + 32] = "parameters (Tab: values, Esc: knobs)";
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "parameters /%s", filter);
+    } else if (shows_knobs(view)) {
+        snprintf(title, sizeof title, "knobs (/ all %d)", parameter_count);
     } else if (a.width < WIDE) {
         snprintf(title, sizeof title, "parameters (Tab: values)");
     }

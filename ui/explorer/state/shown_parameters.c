@@ -66,9 +66,40 @@ void parameter_list_arrange(parameter_list *list, const scenario *s, int selecte
     list->folded[parameter_group(selected)] = false;
 }
 
+bool parameter_list_is_brief(const parameter_list *list, const char *filter)
+{
+    return !list->all && filter[0] == '\0';
+}
+
+// The knobs, the selected parameter if it is none of them, and the heading of all.
+static int knob_lines(const parameter_list *list, parameter_line lines[PARAMETER_LINES],
+                      int *selected)
+{
+    int count = 0;
+    *selected = -1;
+    for (int i = 0; i < list->knob_count; i++) {
+        if (list->knobs[i] == list->parameter) {
+            *selected = i;
+        }
+        lines[count++] = (parameter_line){list->knobs[i], false};
+    }
+    if (*selected < 0 && !list->on_heading) {
+        *selected = count;
+        lines[count++] = (parameter_line){list->parameter, false};
+    }
+    if (list->on_heading) {
+        *selected = count;
+    }
+    lines[count++] = (parameter_line){0, true};
+    return count;
+}
+
 int parameter_list_lines(const parameter_list *list, const char *filter,
                          parameter_line lines[PARAMETER_LINES], int *selected)
 {
+    if (parameter_list_is_brief(list, filter)) {
+        return knob_lines(list, lines, selected);
+    }
     const int own = parameter_group(list->parameter);
     int count = 0, group = -1;
     *selected = 0;
@@ -113,7 +144,12 @@ void parameter_list_fold(parameter_list *list, int parameter)
     assert(parameter >= 0 && parameter < parameter_count);
     list->parameter = parameter_group(parameter);
     list->on_heading = true;
-    list->folded[list->parameter] = !list->folded[list->parameter];
+
+    // below the knobs the heading of all shows all, folded as they are
+    if (list->all) {
+        list->folded[list->parameter] = !list->folded[list->parameter];
+    }
+    list->all = true;
 }
 
 int parameter_of_name(const char *name)

@@ -6,7 +6,6 @@
 
 #include "src/base/text_stream.h"
 #include "src/run/resume.h"
-#include "src/rig/controller.h"
 #include "src/rig/rig.h"
 #include "src/scenario/effect.h"
 
@@ -29,41 +28,6 @@ static void define_panes(const explorer_model *model, explorer_view *view)
     const pane_wishes wishes = {model_has_law(model), base->panes, base->pane_count,
                                 model->lesson.on, room};
     panes_define(&view->panes, &wishes);
-}
-
-// The number of a law's own that it begins with, or what it presses with if it does; -1
-// if it has none.
-static int parameter_of_law(const controller *law)
-{
-    const int force = PARAMETER_INDEX(control.force);
-    int first = -1;
-    for (int i = 0; i < law->parameter_count; i++) {
-        char path[PARAMETER_NAME];
-        snprintf(path, sizeof path, "control.%s", law->parameters[i].name);
-        const int own = parameter_find(path);
-        if (own == force) {
-            return force;
-        }
-        if (i == 0) {
-            first = own;
-        }
-    }
-    return first;
-}
-
-// The parameter that a run is about: what its law presses with, or the voltage.
-static int main_parameter(const explorer_model *model)
-{
-    const controller *law =
-        controller_of(model->session.effective.parameters.control.law);
-    const int own = law != NULL ? parameter_of_law(law) : -1;
-    if (own >= 0) {
-        return own;
-    }
-    if (model_has_law(model)) {
-        return PARAMETER_INDEX(control.rate);
-    }
-    return PARAMETER_INDEX(motor.voltage);
 }
 
 // Begins the scenario's lesson, if it has one, with the parameters that matter to it.
@@ -120,9 +84,10 @@ static void show_from_start(explorer_model *model, explorer_view *view)
         view->side.panel = PANEL_PARAMETERS;
     }
     parameter_list_arrange(&view->parameters, &model->session.effective,
-                           main_parameter(model));
+                           model_main_parameter(model));
     view->mark.set = false;
     begin_lesson(model, view);
+    model_choose_knobs(model, &view->parameters);
     view->window = (time_window){0};
     for (int i = 0; i < PANES_OF_TABLE; i++) {
         view->panes.pane[i].hidden = 0;
@@ -440,6 +405,7 @@ void state_update(explorer_model *model, explorer_view *view)
                           &s->other.trace);
     }
     update_residual(model, view);
+    model_choose_knobs(model, &view->parameters);
     state_update_axes(model, view);
     model_law_modes(model);
     model_run_log(model);

@@ -266,6 +266,12 @@ const law_modes *model_law_modes(explorer_model *model);
 // The log of the present run.
 const run_log *model_run_log(explorer_model *model);
 
+// The parameter that a run is about: what its law presses with, or the voltage.
+int model_main_parameter(const explorer_model *model);
+// Makes the knobs of a list those of the present run: what it is about, what its scenario
+// gives, what its law has of its own, what was changed; all of them have an effect.
+void model_choose_knobs(const explorer_model *model, parameter_list *list);
+
 // The lines of the list of parameters that are shown, as of parameter_list_lines.
 int view_parameter_lines(const explorer_view *view, parameter_line lines[PARAMETER_LINES],
                          int *selected);

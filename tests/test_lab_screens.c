@@ -1,0 +1,185 @@
+// What the lab's screens answer at a glance, at four sizes: how hard each run hits, how
+// far that is from the reference, and which few values a run is about.
+#include "tests/explorer_on_screen.h"
+
+static const int four_sizes[][2] = {{80, 24}, {100, 30}, {120, 40}, {200, 60}};
+
+// A text is in one of the first ten lines of the screen at every size.
+static void assert_at_top(explorer *ex, const char *wanted)
+{
+    enum { LINES = 10 };
+    for (EACH(size, four_sizes)) {
+        KEPT_TEXT(text) = picture(ex, (*size)[0], (*size)[1], GLYPHS_BRAILLE);
+        char *end = text;
+        for (int i = 0; i < LINES && *end != '\0'; i++) {
+            end += strcspn(end, "\n") + 1;
+        }
+        *end = '\0';
+        fail_if(strstr(text, wanted) == NULL, "'%s' is not in the first lines of:\n%s",
+                wanted, text);
+    }
+}
+
+// The peak and the impulse of a run are there, and, unless they are NaN, their
+// differences from a reference.
+static void assert_results(explorer *ex, double peak, double impulse, double from_peak,
+                           double from_impulse)
+{
+    assert_at_top(ex, "peak N");
+    assert_at_top(ex, "impulse N s");
+    assert_at_top(ex, formatted(" %.4g ", peak));
+    assert_at_top(ex, formatted(" %.4g ", impulse));
+    if (!isnan(from_peak)) {
+        assert_at_top(ex, formatted("%+.3g", peak - from_peak));
+    }
+    if (!isnan(from_impulse)) {
+        assert_at_top(ex, formatted("%+.3g", impulse - from_impulse));
+    }
+}
+
+// The summary of a shipped scenario with another value ("" for none), by a run without
+// the lab.
+static summary summary_with(const char *name, const char *change)
+{
+    KEPT_SCENARIO(s) = shipped_with(name, change);
+    KEPT_RUN(run);
+    assert_int_equal(run_scenario(&s, false, &run), STATUS_OK);
+    return run.summary;
+}
+
+TEST(the_first_screen_says_how_hard_it_hits)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    const summary m = summary_with("corrected/first-impact", "");
+    const double none = (double)NAN;
+    assert_results(&ex, m.peak_force_N, m.contact_impulse_Ns, none, none);
+    assert_at_top(&ex, "as opened");
+    assert_at_top(&ex, "hits at 0.743 m/s");
+}
+
+// Watching, then half the voltage: five keys, the value's own digits included.
+TEST(a_change_stands_beside_the_run_as_opened)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    const summary before = summary_with("corrected/first-impact", "");
+    const summary after = summary_with("corrected/first-impact", "motor.voltage=0.5");
+    press(&ex, "<Enter>0.5<Enter>");
+    assert_results(&ex, after.peak_force_N, after.contact_impulse_Ns, before.peak_force_N,
+                   before.contact_impulse_Ns);
+    assert_at_top(&ex, "ref");
+
+    // both curves are there, each with a colour of its own; undone there is one again
+    assert_int_equal(model_run_count(&ex.model), 2);
+    assert_true(run_ink(1) != run_ink(2));
+    press(&ex, "u");
+    free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
+    assert_int_equal(model_run_count(&ex.model), 1);
+    assert_false(ex.model.session.has_other);
+}
+
+// b keeps further runs: the run as opened stays in the strip, and is the reference again
+// once they are dropped.
+TEST(the_run_as_opened_stays_beside_pinned_runs)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":set arm.k2 4<Enter>b:set arm.k2 6<Enter>b:set motor.voltage 2<Enter>b"
+               ":set motor.voltage 3<Enter>");
+    const double kept = ex.model.pinned.runs[2].run.summary.peak_force_N;
+    const summary *m = &ex.model.session.run.summary;
+    assert_results(&ex, m->peak_force_N, m->contact_impulse_Ns, kept, (double)NAN);
+    assert_int_equal(model_run_count(&ex.model), 5);
+    assert_shows(&ex, "as opened", "k2 4", "k2 6", "voltage 2", "voltage 3");
+    press(&ex, "BBB");
+    assert_string_equal(model_reference_name(&ex.model), "as opened");
+    check_close(ex.model.session.other.summary.peak_force_N,
+                summary_with("corrected/first-impact", "").peak_force_N, 0);
+}
+
+// Another scenario has a reference of its own; on return to a changed one that is back.
+TEST(every_scenario_has_its_own_reference)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":set motor.voltage 0.5<Enter>:open compare/hybrid<Enter>");
+    assert_false(ex.model.session.has_other);
+    press(&ex, ":set control.force 2<Enter>");
+    check_close(ex.model.session.other.summary.peak_force_N,
+                summary_with("compare/hybrid", "").peak_force_N, 0);
+    press(&ex, "uu");
+    assert_string_equal(ex.model.session.base.name, "corrected/first-impact");
+    assert_int_equal(ex.model.session.input_count, 1);
+    check_close(ex.model.session.other.summary.peak_force_N,
+                summary_with("corrected/first-impact", "").peak_force_N, 0);
+}
+
+// With a law overshoot and settling stand there, too, and no reading's spike of 6 N sets
+// the range of a force of 1.77 N.
+TEST(a_law_is_told_by_overshoot_and_settling)
+{
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    const summary m = summary_with("compare/hybrid", "");
+    press(&ex, ":seek 0.4<Enter>");
+    assert_results(&ex, m.peak_force_N, m.contact_impulse_Ns, (double)NAN, (double)NAN);
+    assert_at_top(&ex, formatted(" %.4g ", m.force_overshoot_percent));
+    assert_at_top(&ex, formatted(" %.4g", m.settling_time_s));
+    assert_shows(&ex, "\u2508command", "44.3 mN s\u2191");
+    value_range force;
+    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &force));
+    check_below(force.high, 2);
+}
+
+// Of a chain on a rigid wall the largest force has no limit as links are added: the strip
+// says what a sensor reads.
+TEST(a_chain_is_told_by_what_a_sensor_reads)
+{
+    OPEN_EXPLORER(ex, "corrected/five-links");
+    const summary m = summary_with("corrected/five-links", "");
+    assert_at_top(&ex, "peak N of 1 ms");
+    assert_at_top(&ex, formatted(" %.4g ", m.sensor_1ms_peak_N));
+    press(&ex, ":set wall.contact kelvin-voigt<Enter>");
+    assert_at_top(&ex, "peak N  ");
+}
+
+TEST_IN_FOLDER(data_and_maps_leave_the_results_in_place)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    const summary m = summary_with("corrected/first-impact", "");
+    press(&ex, ":save bench.csv<Enter>:data bench.csv<Enter>");
+    assert_results(&ex, m.peak_force_N, m.contact_impulse_Ns, (double)NAN, (double)NAN);
+    assert_at_top(&ex, "bench.csv");
+    press(&ex, ":data off<Enter>:sweep arm.k2=4:6:3 motor.voltage=1:2:2<Enter>");
+    while (!lab_sweep_is_done(&ex.model.sweep)) {
+        explorer_follow(&ex);
+    }
+    assert_results(&ex, m.peak_force_N, m.contact_impulse_Ns, (double)NAN, (double)NAN);
+
+    // what a limit was asked for has a column
+    press(&ex, ":sweep off<Enter>:solve voltage first_pulse_peak_N<lt>2<Enter>");
+    assert_at_top(&ex, "first pulse peak N");
+}
+
+// Five to nine values a run is about, each with an effect; all others are behind them,
+// and / finds any.
+TEST(knobs_are_few_and_lead_to_all)
+{
+    for (EACH_TEXT(name, "corrected/first-impact", "compare/hybrid", "compare/observer",
+                   "corrected/twenty-links", "thesis/fig-3-4")) {
+        OPEN_EXPLORER(ex, *name);
+        press(&ex, ":set wall.angle 0.05<Enter>");
+        free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
+        const parameter_list *list = &ex.view.parameters;
+        assert_in_range(list->knob_count, 5, 9);
+        for (int i = 0; i < list->knob_count; i++) {
+            assert_null(model_inert_reason(&ex.model, list->knobs[i]));
+        }
+
+        // down to their end, where all begin; Esc goes back
+        for (int i = 0; i < MOST_KNOBS + 1; i++) {
+            press(&ex, "<Down>");
+        }
+        assert_true(list->on_heading);
+        press_shows(&ex, "<Enter>", "\u25be arm", "parameters (Tab");
+        press_shows(&ex, "<Esc>", "knobs (/ all", "!\u25be arm");
+        press_shows(&ex, "/seed", "parameters /seed");
+        press(&ex, "<Esc>");
+    }
+}
