@@ -659,9 +659,13 @@ expect 2 identify hit.yaml $rig --fit arm.k2
 says err "needs a recorded trace"
 expect 1 identify hit.yaml $rig --data recorded.csv --fit arm.hub_inertia=0.004:0.005
 says err "arm.hub_inertia = 0.005 is an end of its range"
-expect 1 identify hit.yaml $rig --set arm.mass=1 --data recorded.csv --fit arm.k2
-says err "per reading, expected about 1"
-says err "the best of 16 starts led to no values that fit"
+expect 3 identify hit.yaml $rig --set arm.mass=1 --data recorded.csv --fit arm.k2=1:10
+says err "the model lacks something"
+says err "recorded.csv shows it most in "
+expect 1 identify hit.yaml $rig --data recorded.csv --fit arm.hub_inertia --starts 3
+says err "not found: of 3 starts 1 of those that were drawn"
+expect 0 identify hit.yaml $rig --data recorded.csv --fit arm.hub_inertia --fit arm.damping_ratio=0:0.05 --noise residual --json fit.json
+grep -q '"low": 0,' fit.json && grep -q '"explained": 0.9' fit.json || fail "an undamped arm has no damping of at least 0"
 
 # --- the limit of a parameter for a condition
 expect 0 solve hit.yaml motor.voltage=0.5:5 'peak_force_N<2' --json solved.json

@@ -355,6 +355,77 @@ TEST(so_they_do_in_a_closed_loop)
     study(made, 4, true);
 }
 
+// --- the search ------------------------------------------------------------------------
+
+// Writes what the sensors of the shipped scenario read when it runs with changes.
+static void record_shipped(char file[64], const char *changes)
+{
+    const scenario s = shipped_with("compare/open-loop", changes);
+    KEPT_RUN(run) = run_done(&s, true);
+    snprintf(file, 64, "/tmp/test_identify.XXXXXX");
+    FILE *stream = fdopen(mkstemp(file), "w");
+    assert_non_null(stream);
+    fputs("time[s],command[V],encoder[rad],tachometer[rad/s],force_reading[N]\n", stream);
+    for (int k = 0; k < 300; k++) {
+        const sample *row = &run.trace.rows[trace_row_at(&run.trace, (k + 0.6) / 200)];
+        fprintf(stream, "%.17g,%.17g,%.17g,%.17g,%.17g\n", k / 200.0, row->command,
+                row->encoder, row->tachometer, row->force_reading);
+    }
+    assert_int_equal(fclose(stream), 0);
+}
+
+// Fits what record_shipped wrote with many seeds of the search: each finds the true
+// values within five of their errors, and none needs more than `most` runs.
+static void search_often(const char *file, const scenario *base, const char *const *fits,
+                         const double *values, int count, int most)
+{
+    for (int seed = 0; seed < 2 * seeds; seed++) {
+        SCOPED(identify_finish)
+        identification id = {.base = base,
+                             .jobs = 2,
+                             .starts = IDENTIFY_STARTS,
+                             .seed = (unsigned long)seed};
+        for (int i = 0; i < count; i++) {
+            DONE(identify_add_path(&id, fits[i], &f));
+        }
+        DONE(identify_add_trace(&id, file, NULL, 0, &f));
+        fit(&id);
+        assert_true(identify_settled(&id));
+        assert_in_range(id.runs, 1, most);
+        for (int i = 0; i < count; i++) {
+            check_close(id.fit[i].value, values[i], 5 * id.fit[i].standard_error);
+        }
+    }
+}
+
+TEST(false_minima_are_left)
+{
+    static const char *const fits[] = {"arm.k2=2:10", "motor.stiction=0.01:0.12",
+                                       "arm.hub_inertia=0.002:0.02"};
+    static const double values[] = {5.63, 0.0612, 0.0071};
+    char file[64];
+    const scenario base = shipped("compare/open-loop");
+    record_shipped(file, "arm.k2=5.63 motor.stiction=0.0612 arm.hub_inertia=0.0071 "
+                         "control.seed=777");
+    search_often(file, &base, fits, values, 3, 2000);
+    unlink(file);
+}
+
+// A force that falls below the threshold of a touch and rises again, pressing all the
+// time.
+TEST(a_light_press_is_no_touch)
+{
+    static const char *const fits[] = {"arm.k2=2:10", "motor.stiction=0.01:0.12",
+                                       "arm.hub_inertia=0.002:0.02"};
+    static const double values[] = {3.174, 0.0572, 0.0143};
+    char file[64];
+    const scenario base = shipped("compare/open-loop");
+    record_shipped(file, "arm.k2=3.174 motor.stiction=0.0572 arm.hub_inertia=0.0143 "
+                         "control.seed=3");
+    search_often(file, &base, fits, values, 3, 2000);
+    unlink(file);
+}
+
 // --- what the data do not say ----------------------------------------------------------
 
 TEST(one_combination_is_named)

@@ -212,7 +212,7 @@ fi
 fit=(identify brief.yaml --set control.law=open-loop --data recorded.csv --fit 'arm.k2=1:90')
 "$program" "${fit[@]}" --starts 2 --quiet >out 2>err
 if ! grep -q MINPACK err; then
-    interrupted "${fit[@]}" --fit arm.mass --starts 10000 --json fit.json -o fitted.yaml --cases cases.set
+    interrupted "${fit[@]}" --fit arm.mass --set arm.links=64 --set wall.contact=kelvin-voigt --json fit.json -o fitted.yaml --cases cases.set
     says err "stopped: "
     [ ! -e fitted.yaml ] && [ ! -e cases.set ] || fail "values that nobody judged pass for fitted ones"
     ! [ -e fit.json ] || part fit.json

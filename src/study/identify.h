@@ -19,15 +19,18 @@
 #include "src/study/sweep_axis.h"
 
 #define IDENTIFY_GUARD 0.01 // [s]
+#define IDENTIFY_BLOCK 0.05 // time over which residuals of noise may be correlated [s]
 // of a direction: smaller ones do not make a parameter undetermined
 #define IDENTIFY_PART 1e-6
 
 enum {
-    IDENTIFY_PATHS = 12,  // that are fitted, at most
-    IDENTIFY_TRACES = 12, // at most
-    IDENTIFY_STARTS = 16, // parameter values that a search begins with, unless it is told
-    IDENTIFY_CASES = 200, // of a set drawn from the covariance
-    IDENTIFY_LAGS = 20    // of the autocorrelation
+    IDENTIFY_PATHS = 12,    // that are fitted, at most
+    IDENTIFY_TRACES = 12,   // at most
+    IDENTIFY_STARTS = 40,   // from which is searched at most, unless it is told
+    IDENTIFY_SCREENED = 16, // sets that are drawn for a start
+    IDENTIFY_CONFIRMED = 3, // drawn starts that settle a search
+    IDENTIFY_CASES = 200,   // of a set drawn from the covariance
+    IDENTIFY_LAGS = 20      // of the autocorrelation
 };
 
 // The signals that a trace may have besides time and command.
@@ -80,7 +83,9 @@ typedef struct recorded_trace {
     double contact_error; // largest, of the fitted arm [s]; NaN without a touch
     double peak_error;    // of the largest force reading, as a share; NaN without one
     double rms[CHANNELS]; // of the residuals, in standard deviations; NaN where there are
-                          // none
+                          // none, and so are the next two
+    double rms_unit[CHANNELS];  // the same in the readings' unit
+    double explained[CHANNELS]; // share of the readings' variance that the run explains
     double whiteness[CHANNELS]; // Ljung and Box's statistic as a normal number; NaN where
                                 // none
 } recorded_trace;
@@ -92,6 +97,8 @@ typedef struct fitted_parameter {
     double scale;                            // in which it is about 1
     double value, standard_error, low, high; // 95 % interval; NaN if it is not determined
     bool determined;
+    bool one_sided; // the value is the least or largest that there is: the interval has
+                    // it as one of its ends
 } fitted_parameter;
 
 // An unknown: a parameter, or what a trace has of its own.
@@ -102,6 +109,14 @@ typedef struct unknown {
     double *value; // where it is kept
 } unknown;
 
+// Where a model explains the readings least: a stretch of a channel of a trace.
+typedef struct unexplained {
+    int trace, channel; // trace -1: there is none
+    double from, to;    // in the trace's own time [s]
+    double rms;         // of the residuals, in standard deviations
+    double rms_unit;    // the same in the readings' unit
+} unexplained;
+
 typedef struct identification {
     const scenario *base; // borrowed
     fitted_parameter fit[IDENTIFY_PATHS];
@@ -110,16 +125,24 @@ typedef struct identification {
     int trace_count;
     int starts, jobs;
     unsigned long seed;
-    run_monitor *monitor; // NULL: nobody looks on
+    bool noise_from_residuals; // the noise of each channel is what the fit leaves of it
+    run_monitor *monitor;      // NULL: nobody looks on
 
     // what comes out
     double *residual; // of all traces one behind the other, in standard deviations
     size_t residuals; //
     int unknowns;     // of them, the parameters first
     unknown unknown[IDENTIFY_UNKNOWNS];
+    double part;       // of each trace that is compared while it is searched
+    int searches;      // starts that were tried
+    int reached;       // of those that were drawn, how many led to the result
+    int runs;          // in all
     double chi_square; // their sum of squares
     double aic;        // Akaike's criterion, chi_square + 2 unknowns
     bool white;        // no channel's residuals are correlated
+    unexplained lack;  // where the residuals are largest
+    double block; // [s] of the residuals that were drawn for the intervals; 0: they are
+                  // white, and the noise gives the intervals; NaN: there are too few
     double covariance[IDENTIFY_PATHS *
                       IDENTIFY_PATHS]; // this and what follows in their scales
     double singular[IDENTIFY_PATHS];   // values of the Jacobian, rising
@@ -165,17 +188,27 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
 const char *identify_words(const identification *id, int k, char *text, size_t size);
 
 // Whether the search ended at an end of its range: then the value is a limit, no
-// estimate.
+// estimate, unless it is one_sided.
 bool identify_at_end(const fitted_parameter *fit);
+
+// Whether the search reached its result from as many drawn starts as settle it. One with
+// the scenario's parameters alone, which draws none, has nothing to settle.
+bool identify_settled(const identification *id);
 
 // Chi square per degree of freedom: about 1 where what the model leaves is the noise of
 // its channels. Above *most it leaves more than noise twice as large as it is said to be:
 // five standard deviations above the mean of that.
 double identify_misfit(const identification *id, double *most);
 
+// Whether what the model leaves is noise: residuals that are white, and no larger than
+// *most of identify_misfit. If not, `lack` says where it lacks something.
+bool identify_explained(const identification *id);
+
 // {"scenario", "fit": [{"path", "value", "standard_error", "low", "high", "determined",
-// "at_end_of_range"}], "correlation", "singular_values", "undetermined", "chi_square",
-// "residuals", "aic", "white", "traces"}. NULL without memory.
+// "at_end_of_range", "one_sided"}], "correlation", "singular_values", "undetermined",
+// "chi_square", "residuals", "aic", "white", "block_s", "lack": null or {"file",
+// "signal", "from_s", "to_s", "rms", "rms_over_deviation"}, "search": {"starts",
+// "reached", "runs"}, "traces"}. NULL without memory.
 json_t *identify_json(const identification *id);
 json_t *identify_traces_json(const identification *id);
 
@@ -192,10 +225,37 @@ double identify_rate(const recorded_trace *t, double usual);
 // The value of the range to search that is nearest to another.
 double identify_within_range(const fitted_parameter *fit, double value);
 
+// Lists the unknowns of the fit: the parameters, then those of each trace.
+void identify_list_unknowns(identification *id);
+// The value of unknown n at x, x being in units of its scale; a parameter's value is
+// limited to its range.
+double identify_unknown_value(const identification *id, int n, double x);
+// Computes the residuals of `sets` sets of unknowns x[sets * unknowns], in their scales:
+// out[sets * residuals], of each set those of all traces, then the penalties of the
+// parameters. Of set s only trace only[s] is run; with only[s] = -1, or without `only`
+// (NULL), every trace is. With `judge` the traces' errors of contacts and peaks are
+// filled in. `why` (may be NULL) receives the fault of the first run that failed.
+status identify_evaluate(identification *id, const double *x, int sets, const int *only,
+                         bool judge, double *out, fault *why, fault *f);
+// The Jacobian of the residuals by the unknowns at x, jacobian[unknowns * residuals],
+// column by column, by central differences. Fails as identify_evaluate does.
+status identify_jacobian(identification *id, const double *x, double *jacobian, fault *f);
+// Searches the unknowns x[unknowns] with the least sum of squares, *least: NaN if nothing
+// was tried. Fails as identify_fit does; x are then the best so far.
+status identify_search(identification *id, double *x, double *least, fault *f);
 // Residuals of a trace (its own number of them) under parameters p and what it has of its
 // own. Returns what stopped the run, with a sentence in f, and residuals of 1e3 each.
 status identify_residuals(const identification *id, recorded_trace *t,
                           const parameters *p, const double own[OWNS], bool judge,
                           double *residual, fault *f);
+// Finds sizes and whiteness of the residuals of every channel, and where they are
+// largest.
+status identify_explain(identification *id, fault *f);
+// The errors that residuals which stay correlated give: replaces the covariance, and sets
+// `block` and every parameter's interval; block is NaN where there are too few residuals.
+// alone[count * residuals]: columns of the Jacobian, freed of what the traces' own
+// unknowns explain; values[count]: eigenvalues of their products.
+status identify_bootstrap(identification *id, const double *alone, const double *values,
+                          fault *f);
 // Judges the result: Jacobian column by column, jacobian[unknowns * residuals].
 status identify_judge(identification *id, const double *jacobian, fault *f);

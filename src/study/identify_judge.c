@@ -1,100 +1,17 @@
-// Judges a fit: how well its parameters are known, and whether the model explains the
-// recorded readings.
+// Judges a fit: how well its parameters are known.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/base/dense.h"
-#include "src/base/plain_math.h"
 #include "src/study/identify.h"
 
-#define QUANTILE 1.959963984540054 // of the normal distribution, for 95 %
-#define BLOCK    0.05              // time over which residuals may be correlated [s]
+// Quantiles of the normal distribution: 95 % within, and below.
+#define QUANTILE       1.959963984540054
+#define QUANTILE_BELOW 1.644853626951473
 // singular value below which the error of a combination exceeds its value
 #define LEAST_KNOWN 1.0
 #define NO_SAY      1e-12 // eigenvalue, over the largest one, that counts as zero
-// standard normal deviate that white residuals exceed once in 4000
-#define WHITE       3.5
-#define NOISE_KNOWN 2.0 // factor within which a bench knows its noise
-// standard deviations that chi square is not above its mean by chance
-#define CHANCE 5.0
-
-// --- whiteness -------------------------------------------------------------------------
-
-// Whether a series of residuals is white noise: a number that is standard normal if it
-// is. Ljung and Box's statistic, with r_lag the autocorrelation and n the count,
-//
-//     Q = n (n + 2) sum over lags of r_lag^2/(n - lag),
-//
-// is chi square with k = lags degrees of freedom, which Wilson and Hilferty's
-// transformation makes normal: ((Q/k)^(1/3) - 1 + 2/(9 k))/sqrt(2/(9 k)). Samples with a
-// deviation of 0 are gaps. *rms receives the root of the mean square.
-static double whiteness_of(const double *series, const double *deviation, size_t rows,
-                           double *rms)
-{
-    double squares = 0, statistic = 0;
-    size_t count = 0;
-    for (size_t i = 0; i < rows; i++) {
-        squares += series[i] * series[i];
-        if (deviation[i] > 0) {
-            count++;
-        }
-    }
-    if (count > 0) {
-        *rms = sqrt(squares / (double)count);
-    } else {
-        *rms = (double)NAN;
-    }
-    if (count < 5 * IDENTIFY_LAGS || squares == 0) {
-        return (double)NAN;
-    }
-    for (size_t lag = 1; lag <= IDENTIFY_LAGS; lag++) {
-        double product = 0;
-        for (size_t i = lag; i < rows; i++) {
-            product += series[i] * series[i - lag];
-        }
-        const double correlation = product / squares;
-        statistic += correlation * correlation / (double)(count - lag);
-    }
-    statistic *= (double)count * (double)(count + 2);
-
-    const double k = IDENTIFY_LAGS, variance = 2 / (9 * k);
-    return (plain_pow(statistic / k, 1.0 / 3) - (1 - variance)) / sqrt(variance);
-}
-
-// Finds rms and whiteness of every channel of every trace, and whether all are white. The
-// steps of an encoder are no noise: beside a tachometer it has no say in that.
-static status judge_whiteness(identification *id, fault *f)
-{
-    const double *residual = id->residual;
-    id->white = true;
-    for (int k = 0; k < id->trace_count; k++) {
-        recorded_trace *t = &id->traces[k];
-        SCOPED(free_kept) double *series = calloc(t->rows, sizeof *series);
-        if (series == NULL) {
-            return fault_no_memory(f);
-        }
-        const bool has_tachometer = t->reading[CHANNEL_TACHOMETER] != NULL;
-        for (int c = 0; c < CHANNELS; c++) {
-            t->rms[c] = t->whiteness[c] = (double)NAN;
-            if (t->reading[c] == NULL) {
-                continue;
-            }
-            for (size_t i = 0; i < t->rows; i++) {
-                if (t->deviation[c][i] > 0) {
-                    series[i] = *residual++;
-                } else {
-                    series[i] = 0;
-                }
-            }
-            t->whiteness[c] = whiteness_of(series, t->deviation[c], t->rows, &t->rms[c]);
-            const bool has_say = c != CHANNEL_ENCODER || !has_tachometer;
-            id->white = id->white && !(has_say && t->whiteness[c] > WHITE);
-        }
-        residual += t->contact_count;
-    }
-    return STATUS_OK;
-}
 
 // --- sums ------------------------------------------------------------------------------
 
@@ -195,7 +112,7 @@ static void add_readings(const identification *id, const recorded_trace *t, int 
     for (size_t i = 0; i < t->rows; i++) {
         // samples that repeat a reading are one reading: no block ends among them
         const bool repeats = i > 0 && reading[i] == reading[i - 1];
-        if (t->time[i] - block_start >= BLOCK && !repeats) {
+        if (t->time[i] - block_start >= IDENTIFY_BLOCK && !repeats) {
             block_start = t->time[i];
             end_block(sums, block, p);
         }
@@ -324,6 +241,35 @@ static void find_covariance(identification *id, const double *values,
     }
 }
 
+// The errors and the interval of parameter i, from the covariance; `part` is the share of
+// it that lies in combinations which are not determined. An interval from drawn residuals
+// is there already.
+static void find_interval(identification *id, int i, double part)
+{
+    fitted_parameter *fit = &id->fit[i];
+    const double least = sweep_axis_parameter(&fit->axis)->minimum;
+    fit->determined = part < IDENTIFY_PART;
+    fit->one_sided = least == 0 && fit->value == 0;
+    fit->standard_error = fit->scale * sqrt(id->covariance[i * id->count + i]);
+    if (!fit->determined || isnan(id->block)) {
+        fit->standard_error = (double)NAN;
+    }
+    if (!(id->block > 0)) {
+        fit->low = fit->value - QUANTILE * fit->standard_error;
+        fit->high = fit->value + QUANTILE * fit->standard_error;
+    }
+
+    // what cannot be less than nothing is not below it, and at it it has an upper limit
+    if (!fit->determined) {
+        fit->low = fit->high = (double)NAN;
+    } else if (fit->one_sided) {
+        fit->low = 0;
+        fit->high = QUANTILE_BELOW * fit->standard_error;
+    } else if (least == 0 && fit->low < 0) {
+        fit->low = 0;
+    }
+}
+
 status identify_judge(identification *id, const double *jacobian, fault *f)
 {
     const int p = id->count;
@@ -331,7 +277,7 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     double scatter[IDENTIFY_PATHS * IDENTIFY_PATHS] = {0};
     id->chi_square = dot(id->residual, id->residual, id->residuals);
     id->aic = id->chi_square + 2 * id->unknowns;
-    TRY(judge_whiteness(id, f));
+    TRY(identify_explain(id, f));
     if (p == 0) {
         return STATUS_OK;
     }
@@ -363,33 +309,18 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
         }
     }
     find_covariance(id, values, scatter);
+    id->block = 0;
+    if (!id->white) {
+        TRY(identify_bootstrap(id, alone, values, f));
+    }
 
     // a parameter with a part in combinations that are not determined is not known
     for (int i = 0; i < p; i++) {
-        fitted_parameter *fit = &id->fit[i];
-        double undetermined_part = 0;
+        double part = 0;
         for (int k = 0; k < id->undetermined; k++) {
-            undetermined_part += id->direction[k * p + i] * id->direction[k * p + i];
+            part += id->direction[k * p + i] * id->direction[k * p + i];
         }
-        fit->determined = undetermined_part < IDENTIFY_PART;
-        if (fit->determined) {
-            fit->standard_error = id->fit[i].scale * sqrt(id->covariance[i * p + i]);
-        } else {
-            fit->standard_error = (double)NAN;
-        }
-        fit->low = fit->value - QUANTILE * fit->standard_error;
-        fit->high = fit->value + QUANTILE * fit->standard_error;
+        find_interval(id, i, part);
     }
     return STATUS_OK;
-}
-
-// Chi square has as many degrees of freedom n as there are readings more than unknowns;
-// noise alone gives it the mean n and the standard deviation sqrt(2 n). The residuals
-// include one penalty for each parameter, which is no reading.
-double identify_misfit(const identification *id, double *most)
-{
-    const size_t readings = id->residuals - (size_t)id->count;
-    const double freedom = (double)(readings - (size_t)id->unknowns);
-    *most = NOISE_KNOWN * NOISE_KNOWN * (1 + CHANCE * sqrt(2 / freedom));
-    return id->chi_square / freedom;
 }

@@ -17,7 +17,11 @@
 #define ROUNDING        1e-9 // relative, of a period
 #define HELD            1.5  // periods of rows that a sample lasts which they repeat
 
-enum { LEAST_CHANGES = 20, ROWS_FOR_ONE_BAD = 20 };
+enum {
+    LEAST_CHANGES = 20,
+    ROWS_FOR_ONE_BAD = 20,
+    SHOWN_STEPS = 100 // of IDENTIFY_GUARD, in which a touch is shown
+};
 
 const int identify_signals[CHANNELS] = {
     SIGNAL_INDEX(encoder),     SIGNAL_INDEX(tachometer), SIGNAL_INDEX(force_reading),
@@ -243,11 +247,16 @@ static double deviation_of(const sensor_parameters *s, int channel, double *rang
 }
 
 // Finds the touches in the force that was recorded, and marks the samples within
-// IDENTIFY_GUARD of a touch or a release, near[rows].
-static void find_touches(recorded_trace *t, double threshold, unsigned char *near)
+// IDENTIFY_GUARD of a touch or a release, near[rows]. A touch ends a flight, in which the
+// sensor shows nothing but noise; a force that only falls below the threshold and rises
+// again is none.
+static void find_touches(recorded_trace *t, const parameters *p, unsigned char *near)
 {
-    const double *force = t->reading[force_channel(t)];
-    double released = -HUGE_VAL;
+    const int channel = force_channel(t);
+    const double *force = t->reading[channel], threshold = p->control.contact_threshold;
+    double released = -HUGE_VAL, range;
+    bool dithered, flew = true;
+    const double noise = deviation_of(&p->sensor, channel, &range, &dithered);
     size_t before = t->rows; // the last reading; none yet
     for (size_t i = 0; force != NULL && i < t->rows; i++) {
         if (isnan(force[i])) {
@@ -256,16 +265,20 @@ static void find_touches(recorded_trace *t, double threshold, unsigned char *nea
         const size_t last = before < t->rows ? before : i;
         const bool touched = force[last] > threshold, touches = force[i] > threshold;
         before = i;
+        if (compared_value(&p->sensor, channel, force[last]) < NEAR_RANGE * noise) {
+            flew = true;
+        }
         if (touched == touches) {
             continue;
         }
 
         // a touch soon after a release is no touch of its own
         const double change = (t->time[last] + t->time[i]) / 2;
-        if (touches && change - released > IDENTIFY_GUARD) {
+        if (touches && flew && change - released > IDENTIFY_GUARD) {
             t->contacts[t->contact_count++] = change;
         }
         released = change;
+        flew = false;
 
         // the samples before the change, and those after it
         for (size_t k = i; k-- > 0 && change - t->time[k] <= IDENTIFY_GUARD;) {
@@ -330,7 +343,7 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
     if (near == NULL || t->contacts == NULL) {
         return fault_no_memory(f);
     }
-    find_touches(t, p->control.contact_threshold, near);
+    find_touches(t, p, near);
     t->residuals = (size_t)t->contact_count;
     for (int c = 0; c < CHANNELS; c++) {
         if (t->reading[c] != NULL) {
@@ -498,6 +511,12 @@ static const controller playback = {.interface = CONTROLLER_INTERFACE,
                                     .start = start_playback,
                                     .sample = play_back};
 
+// Until when a trace is compared [s]: a search takes it in parts.
+static double horizon_of(const identification *id, const recorded_trace *t)
+{
+    return id->part * t->time[t->rows - 1];
+}
+
 // Makes the scenario of a run under the recorded command, from the start in own[]. Its
 // sensors keep their lags, curves and ripple; they have no noise and no steps, whose size
 // the residuals are measured by.
@@ -529,7 +548,7 @@ static status playback_scenario(const identification *id, const recorded_trace *
         {PARAMETER_INDEX(control.force_limit), 0},
         {PARAMETER_INDEX(initial.angle), own[OWN_ANGLE]},
         {PARAMETER_INDEX(initial.velocity), own[OWN_VELOCITY]},
-        {PARAMETER_INDEX(run.duration), t->time[t->rows - 1] + 3 / rate},
+        {PARAMETER_INDEX(run.duration), horizon_of(id, t) + 3 / rate},
     };
     scenario from = *id->base;
     from.parameters = *p;
@@ -613,19 +632,18 @@ static double reading_at(const trace *run, sensors *eyes, int channel, double ti
     return value[0];
 }
 
-// The touch of the run that is nearest to an instant [s]; the run's end if there is none.
-static double nearest_touch(const trace *run, double time)
+// The touch of the run that is nearest to an instant [s]; NULL if there is none.
+static const event *nearest_touch(const trace *run, double time)
 {
-    double released = -HUGE_VAL, best = run->rows[run->row_count - 1].time;
-    bool any = false;
+    double released = -HUGE_VAL;
+    const event *best = NULL;
     for (size_t i = 0; i < run->event_count; i++) {
         const event *e = &run->events[i];
         const bool touches = e->kind == EVENT_IMPACT || e->kind == EVENT_CONTACT;
         if (touches && e->time - released > IDENTIFY_GUARD) {
-            if (!any || fabs(e->time - time) < fabs(best - time)) {
-                best = e->time;
+            if (best == NULL || fabs(e->time - time) < fabs(best->time - time)) {
+                best = e;
             }
-            any = true;
         }
 
         // after an impact the arm is off the wall at once, in contact until a release
@@ -640,11 +658,58 @@ static double nearest_touch(const trace *run, double time)
     return best;
 }
 
+// When the force sensor shows a touch of the run: as its reading, which was 0 in the
+// flight before, exceeds the threshold [s]. Of a touch that is too light to be shown it
+// is the touch itself.
+static double touch_shown(const trace *run, const event *touch, const parameters *p,
+                          int channel)
+{
+    const double h = IDENTIFY_GUARD / SHOWN_STEPS;
+    const double threshold = p->control.contact_threshold;
+    double shown = 0;
+    sensors eyes;
+    sensors_init(&eyes, &p->sensor, 0);
+    sensors_strike(&eyes, touch->impulse);
+    sensed_motion before = {.force = trace_sample_at(run, touch->time, 0).force};
+    for (int k = 0; k < SHOWN_STEPS; k++) {
+        // the reading at the end of a short step, in which the force changes straight
+        sensed_motion now = {
+            .force = trace_sample_at(run, touch->time + (k + 1) * h, 0).force};
+        sensors_follow(&eyes, h, &before, &now, (before.force + now.force) / 2);
+        const sensor_reading r = sensors_read(&eyes, &now);
+        double reading = r.force_reading;
+        if (channel == CHANNEL_PIEZO) {
+            reading = r.piezo_force;
+        }
+
+        if (reading > threshold) {
+            const double share = (threshold - shown) / (reading - shown);
+            return touch->time + (k + fmax(share, 0)) * h;
+        }
+        shown = reading;
+        before = now;
+    }
+    return touch->time;
+}
+
+// The instant at which the run's force sensor shows the touch that is nearest to `time`
+// [s]; the run's end if there is none.
+static double nearest_shown(const recorded_trace *t, const trace *run,
+                            const parameters *p, double time)
+{
+    const event *touch = nearest_touch(run, time);
+    if (touch == NULL) {
+        return run->rows[run->row_count - 1].time;
+    }
+    return touch_shown(run, touch, p, force_channel(t));
+}
+
 // Compares the run's largest force and its touches with the recorded ones: fills in the
 // trace's relative error of the peak and its largest error of an instant of touch [s].
-static void judge_run(recorded_trace *t, const trace *run, double period,
+static void judge_run(recorded_trace *t, const trace *run, const parameters *p,
                       const double *own)
 {
+    const double period = 1 / p->control.rate;
     const int channel = force_channel(t);
     double recorded = 0, computed = 0;
     for (size_t i = 0; t->reading[channel] != NULL && i < t->rows; i++) {
@@ -664,25 +729,25 @@ static void judge_run(recorded_trace *t, const trace *run, double period,
     }
     for (int i = 0; i < t->contact_count; i++) {
         const double at = t->contacts[i] - own[OWN_SHIFT];
-        t->contact_error = fmax(t->contact_error, fabs(nearest_touch(run, at) - at));
+        t->contact_error =
+            fmax(t->contact_error, fabs(nearest_shown(t, run, p, at) - at));
     }
 }
 
 // Writes the residuals of a run, recorded less computed over the deviation: of every
 // reading that is compared, then of the instants of touches, which are known to a
-// sampling period.
-// Writes the residuals of a run, recorded less computed over the deviation: of every
-// reading that is compared, then of the instants of touches, which are known to a
-// sampling period.
+// sampling period. Those after the horizon [s] are 0.
 static void compare_run(const recorded_trace *t, const trace *run, const parameters *p,
-                        const double own[OWNS], double *residual)
+                        double horizon, const double own[OWNS], double *residual)
 {
     sensors eyes;
     const double period = 1 / p->control.rate;
     sensors_init(&eyes, &p->sensor, 0);
     for (int c = 0; c < CHANNELS; c++) {
         for (size_t i = 0; t->reading[c] != NULL && i < t->rows; i++) {
-            if (t->deviation[c][i] > 0) {
+            if (t->deviation[c][i] > 0 && t->time[i] > horizon) {
+                *residual++ = 0;
+            } else if (t->deviation[c][i] > 0) {
                 const double time = fmax(t->time[i] - own[OWN_SHIFT], 0);
                 const double offset = c == CHANNEL_ENCODER ? own[OWN_OFFSET] : 0;
                 const double computed = reading_at(run, &eyes, c, time, period) + offset;
@@ -694,7 +759,11 @@ static void compare_run(const recorded_trace *t, const trace *run, const paramet
     }
     for (int i = 0; i < t->contact_count; i++) {
         const double at = t->contacts[i] - own[OWN_SHIFT];
-        *residual++ = (at - nearest_touch(run, at)) / (period / sqrt(12));
+        if (t->contacts[i] > horizon) {
+            *residual++ = 0;
+        } else {
+            *residual++ = (at - nearest_shown(t, run, p, at)) / (period / sqrt(12));
+        }
     }
 }
 
@@ -717,7 +786,7 @@ status identify_residuals(const identification *id, recorded_trace *t,
 
     // a run that fails, or a reading that it does not have, gets a large residual
     if (code == STATUS_OK) {
-        compare_run(t, &result.trace, &made.parameters, own, residual);
+        compare_run(t, &result.trace, &made.parameters, horizon_of(id, t), own, residual);
     }
     for (size_t i = 0; i < t->residuals; i++) {
         if (!(code == STATUS_OK && isfinite(residual[i]))) {
@@ -725,7 +794,7 @@ status identify_residuals(const identification *id, recorded_trace *t,
         }
     }
     if (code == STATUS_OK && judge) {
-        judge_run(t, &result.trace, 1 / made.parameters.control.rate, own);
+        judge_run(t, &result.trace, &made.parameters, own);
     }
     return code;
 }

@@ -64,15 +64,30 @@ json_t *identify_traces_json(const identification *id)
                      t->contact_count, t->contact_error, 100 * t->peak_error);
         for (int c = 0; c < CHANNELS; c++) {
             if (t->reading[c] != NULL) {
-                json_add(channels, json_of("signal:t rms_over_deviation:n whiteness:n",
-                                           signal_table[identify_signals[c]].name,
-                                           t->rms[c], t->whiteness[c]));
+                json_add(channels,
+                         json_of("signal:t rms:n explained:n rms_over_deviation:n "
+                                 "whiteness:n",
+                                 signal_table[identify_signals[c]].name, t->rms_unit[c],
+                                 t->explained[c], t->rms[c], t->whiteness[c]));
             }
         }
         json_put(line, "residuals", channels);
         json_add(traces, line);
     }
     return traces;
+}
+
+// What the model lacks, as far as the data show it; null where they do not.
+static json_t *lack_json(const identification *id)
+{
+    const unexplained *lack = &id->lack;
+    if (identify_explained(id) || lack->trace < 0) {
+        return json_null();
+    }
+    return json_of("file:t signal:t from_s:n to_s:n rms:n rms_over_deviation:n",
+                   id->traces[lack->trace].file,
+                   signal_table[identify_signals[lack->channel]].name, lack->from,
+                   lack->to, lack->rms_unit, lack->rms);
 }
 
 json_t *identify_json(const identification *id)
@@ -82,10 +97,11 @@ json_t *identify_json(const identification *id)
     for (int i = 0; i < p; i++) {
         const fitted_parameter *parameter = &id->fit[i];
         json_add(fit, json_of("path:t value:n standard_error:n low:n high:n determined:b "
-                              "at_end_of_range:b",
+                              "at_end_of_range:b one_sided:b",
                               parameter->axis.name, parameter->value,
                               parameter->standard_error, parameter->low, parameter->high,
-                              parameter->determined, identify_at_end(parameter)));
+                              parameter->determined, identify_at_end(parameter),
+                              parameter->one_sided));
 
         // its correlations with all parameters: covariance over both deviations
         double row[IDENTIFY_PATHS];
@@ -105,9 +121,13 @@ json_t *identify_json(const identification *id)
         json_add(words, json_text(identify_words(id, k, text, sizeof text)));
     }
     return json_of("scenario:t fit:o correlation:o singular_values:o undetermined:o "
-                   "chi_square:n residuals:i aic:n white:b traces:o",
+                   "chi_square:n residuals:i aic:n white:b block_s:n lack:o "
+                   "search:o traces:o",
                    id->base->name, fit, rows, json_numbers(id->singular, p), words,
-                   id->chi_square, (int)id->residuals - p, id->aic, id->white,
+                   id->chi_square, (int)id->residuals - p, id->aic, id->white, id->block,
+                   lack_json(id),
+                   json_of("starts:i reached:i runs:i", id->searches, id->reached,
+                           id->runs),
                    identify_traces_json(id));
 }
 

@@ -206,6 +206,7 @@ static const term exit_status[] = {
     {"1", "The run failed or is inaccurate, an expectation was not met, or a "
           "file could not be written."},
     {"2", "Bad arguments or a bad scenario."},
+    {"3", "identify found a fit, and the data show something that the model lacks."},
     {"130", "Ended by ^C; what was computed is kept, and a second ^C ends at once."},
     {NULL},
 };

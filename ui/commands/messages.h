@@ -7,7 +7,12 @@
 
 #include "src/scenario/scenario.h"
 
-enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_BAD_ARGUMENTS = 2 };
+enum {
+    EXIT_DONE = 0,
+    EXIT_FAILED = 1,
+    EXIT_BAD_ARGUMENTS = 2,
+    EXIT_UNEXPLAINED = 3 // a fit was found whose model the data contradict
+};
 
 // Prints "impactlab: " and the sentence to stderr. Returns EXIT_BAD_ARGUMENTS.
 int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -2,6 +2,7 @@
 #include "ui/commands/command.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"
@@ -44,6 +45,8 @@ static status read_fit(const arguments *a, const scenario *s, identification *id
     *id = (identification){.base = s,
                            .jobs = many_runs_jobs(a),
                            .seed = a->seed,
+                           .noise_from_residuals =
+                               a->noise != NULL && strcmp(a->noise, "residual") == 0,
                            .starts = IDENTIFY_STARTS};
     if (a->starts > 0) {
         id->starts = (int)a->starts;
@@ -172,8 +175,15 @@ static json_t *fit_json(const void *found)
 static void print_fitted_parameter(const fitted_parameter *fit, bool is_judged)
 {
     const char *name = fit->axis.name;
-    if (fit->determined) {
-        const char *unit = sweep_axis_parameter(&fit->axis)->unit;
+    const char *unit = sweep_axis_parameter(&fit->axis)->unit;
+    if (fit->determined && isnan(fit->standard_error)) {
+        say("  %-26s %12.6g %12s   none: what is left is no noise, and too short to "
+            "say\n",
+            name, fit->value, "-");
+    } else if (fit->determined && fit->one_sided) {
+        say("  %-26s %12.6g %12.3g   at most %.6g %s\n", name, fit->value,
+            fit->standard_error, fit->high, unit);
+    } else if (fit->determined) {
         say("  %-26s %12.6g %12.3g   %.6g to %.6g %s", name, fit->value,
             fit->standard_error, fit->low, fit->high, unit);
         if (identify_at_end(fit)) {
@@ -190,23 +200,24 @@ static void print_fitted_parameter(const fitted_parameter *fit, bool is_judged)
 // What a trace has of its own, and what its residuals are.
 static void print_recorded_trace(const recorded_trace *t, const char *what)
 {
-    say("  %s %s: shifted by %.3g ms, encoder by %.3g rad;", what, t->file,
+    say("  %s %s: shifted by %.3g ms, encoder by %.3g rad", what, t->file,
         1e3 * t->own[OWN_SHIFT], t->own[OWN_OFFSET]);
-
-    // how large the residuals of each channel are
-    for (int c = 0; c < CHANNELS; c++) {
-        if (!isnan(t->rms[c])) {
-            say(" %s %.3g", signal_table[identify_signals[c]].name, t->rms[c]);
-        }
-    }
-
-    say(" of their noise");
     if (t->contact_count > 0) {
         say("; %d contact%s within %.3g ms, largest force off by %.3g %%",
             t->contact_count, plural_ending((size_t)t->contact_count),
             1e3 * t->contact_error, 100 * t->peak_error);
     }
     say("\n");
+
+    // how large the residuals of each channel are
+    for (int c = 0; c < CHANNELS; c++) {
+        const signal_info *signal = &signal_table[identify_signals[c]];
+        if (!isnan(t->rms[c])) {
+            say("    %-14s off by %.3g %s (rms), %.3g of its noise; %.5g %% explained\n",
+                signal->name, t->rms_unit[c], signal->unit, t->rms[c],
+                100 * t->explained[c]);
+        }
+    }
 }
 
 static void print_recorded_traces(const identification *id, const char *what)
@@ -228,12 +239,16 @@ static void print_judgement(const fit_outcome *o)
     }
 
     // what the fit leaves, in all and by trace
-    const char *residuals = "correlated: the model lacks something that the data show";
-    if (id->white) {
-        residuals = "white";
-    }
     say("\n  %zu readings, chi square %.4g, AIC %.6g; the residuals are %s\n",
-        id->residuals - (size_t)id->count, id->chi_square, id->aic, residuals);
+        id->residuals - (size_t)id->count, id->chi_square, id->aic,
+        id->white ? "white" : "correlated");
+    if (id->block > 0) {
+        say("  errors and intervals are of residuals drawn in blocks of %.3g s\n",
+            id->block);
+    }
+    say("  the least of %d starts, reached from %d of those that were drawn, in %d "
+        "runs\n",
+        id->searches, id->reached, id->runs);
     print_recorded_traces(id, "trace");
     print_recorded_traces(&o->validation, "validation");
 
@@ -286,32 +301,73 @@ static int plot_fit(const arguments *a, const void *found)
 
 // --- the command -----------------------------------------------------------------------
 
-// Whether the values can be relied on; complains where they cannot.
-static bool is_reliable(const identification *id)
+// Complains of values that were not found. Returns whether there are such.
+static bool complain_not_found(const identification *id)
 {
-    bool reliable = id->undetermined == 0;
+    bool found = id->undetermined == 0;
 
     // a value at the end of its range is a limit
     for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
-        if (identify_at_end(fit)) {
+        if (identify_at_end(fit) && !fit->one_sided) {
             complain("%s = %g is an end of its range, no estimate: expected a wider "
                      "--fit %s=a:b",
                      fit->axis.name, fit->value, fit->axis.name);
-            reliable = false;
+            found = false;
         }
     }
 
-    // residuals must be no larger than noise
+    // a minimum that few starts lead to may be a false one
+    if (!identify_settled(id)) {
+        complain(
+            "not found: of %d starts %d of those that were drawn led to the least sum "
+            "of squares, expected %d: there may be better values, try more --starts",
+            id->searches, id->reached, IDENTIFY_CONFIRMED);
+        found = false;
+    }
+    return !found;
+}
+
+// Complains of a model that the data contradict.
+static void complain_unexplained(const identification *id)
+{
+    const unexplained *lack = &id->lack;
     double most;
     const double misfit = identify_misfit(id, &most);
-    if (misfit > most) {
-        complain("chi square is %.3g per reading, expected about 1 and at most %.3g: "
-                 "the best of %d starts led to no values that fit; the scenario may "
-                 "be of another arm or other runs, or more --starts find better values",
-                 misfit, most, id->starts);
+    const char *how = "residuals that are correlated";
+    if (id->white) {
+        how = "residuals larger than noise";
     }
-    return reliable && misfit <= most;
+    if (lack->trace < 0) {
+        complain("the model lacks something: chi square is %.3g per reading, expected "
+                 "about 1",
+                 misfit);
+        return;
+    }
+    const signal_info *signal = &signal_table[identify_signals[lack->channel]];
+    complain(
+        "the model lacks something: the best fit leaves %s, chi square %.3g per "
+        "reading, expected about 1. %s shows it most in %s from %.4g s to %.4g s, off "
+        "by %.3g %s, %.3g times the noise",
+        how, misfit, id->traces[lack->trace].file, signal->name, lack->from, lack->to,
+        lack->rms_unit, signal->unit, lack->rms);
+}
+
+// Whether the values can be relied on; complains where they cannot. Returns the exit
+// status.
+static int judge_fit(const identification *id)
+{
+    const bool not_found = complain_not_found(id), explained = identify_explained(id);
+    if (!explained) {
+        complain_unexplained(id);
+    }
+    if (not_found) {
+        return EXIT_FAILED;
+    }
+    if (!explained) {
+        return EXIT_UNEXPLAINED;
+    }
+    return EXIT_DONE;
 }
 
 static const command_results fit_results = {.json = fit_json,
@@ -361,12 +417,12 @@ static int fit_and_report(const arguments *a, scenario *s)
     if (code != STATUS_OK) {
         return complain_fault(&f);
     }
-    const bool reliable = is_reliable(&o.fit);
-    const int result = write_results(a, &fit_results, &o, true);
-    if (!reliable) {
-        return worse(result, EXIT_FAILED);
+    const int judged = judge_fit(&o.fit);
+    const int written = write_results(a, &fit_results, &o, true);
+    if (written != EXIT_DONE) {
+        return written;
     }
-    return result;
+    return judged;
 }
 
 static const option_row rows[] = {
@@ -385,8 +441,13 @@ static const option_row rows[] = {
                   .replaces = scenario_is),
     OPTION(RESULT, "cases", "FILE.set",
            "write 200 arms drawn from the covariance, for robust", PLACE(cases)),
-    OPTION(WHOLE, "starts", "N", "values that the search begins with (16)", PLACE(starts),
-           .low = 1, .high = 10000),
+    OPTION(CHOICE, "noise", "scenario|residual",
+           "where each channel has its noise from: the scenario, or what the fit leaves "
+           "of it (scenario)",
+           PLACE(noise)),
+    OPTION(WHOLE, "starts", "N",
+           "search from so many starts at most (40); 1: from the scenario's values alone",
+           PLACE(starts), .low = 1, .high = 10000),
     SEED_OPTION,
     JOBS_OPTION,
 };
@@ -410,13 +471,22 @@ const command identify_command = {
         "piezo_force,\n"
         "film, accelerometer. Each trace has a time shift, an encoder offset and an "
         "initial\n"
-        "state of its own. A combination that the data do not determine is named and "
+        "state of its own. It searches from the scenario's values, then from draws until "
+        "three\n"
+        "of these led to the least sum of squares. The exit status is 1 where 40 starts "
+        "do "
         "not\n"
-        "written. The exit status is 1 then, where a value ends at an end of its range, "
-        "and\n"
-        "where chi square per reading is above 4, as of noise twice as large as it is "
-        "said\n"
-        "to be.\n",
+        "settle that, where a value ends at an end of its range (but where that is 0, "
+        "the "
+        "least\n"
+        "there is: then it has an upper limit), and where the data do not determine a\n"
+        "combination, which is named and not written. It is 3 where a fit was found and "
+        "the\n"
+        "model lacks something: residuals that are correlated, or chi square per reading "
+        "above 4,\n"
+        "as of noise twice as large as it is said to be. Intervals are of drawn "
+        "residuals "
+        "then.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &drawn_options,
                 &quiet_options, &page_options},
     .use = fit_and_report,

@@ -77,7 +77,7 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
 
 // --- identification --------------------------------------------------------------------
 
-enum { FIT_STARTS = 4, FIT_THREADS = 4, FIT_RUNS = 400 };
+enum { FIT_STARTS = 12, FIT_THREADS = 4, FIT_RUNS = 600 };
 
 // Writes a fitted value with its error, or that it is not determined.
 static void write_fit(const fitted_parameter *fit, char *text, size_t size)
@@ -113,6 +113,9 @@ static bool tell_fit(explorer_input *input, const identification *id)
     double most;
     if (identify_misfit(id, &most) > most) {
         return act_tell(input, "%s; pinned, but far off the data", text);
+    }
+    if (!identify_settled(id)) {
+        return act_tell(input, "%s; pinned, but other starts may end better", text);
     }
     if (id->white) {
         return act_tell(input, "%s; that run is pinned", text);

@@ -1,0 +1,278 @@
+// Searches the least sum of squares.
+//
+// The sum of squares has minima besides the least one: a touch of the run may be taken
+// for another one of the recording, and behind a touch little is left of what a wrong
+// parameter does. So each search first fits the beginning of the traces, then more of
+// them, until it has them whole: what the beginning tells brings the next touches near
+// those that were recorded.
+//
+// The first two searches start with the scenario's parameters, each other one with the
+// best of IDENTIFY_SCREENED sets that are drawn independently. The result is settled when
+// the least of their minima was reached from IDENTIFY_CONFIRMED drawn starts: a false
+// minimum that draws end in with probability a, while they end in the least with
+// probability b, is taken for it with at most (a/(a + b))^IDENTIFY_CONFIRMED.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/build_config.h"
+#include "src/base/random.h"
+#include "src/study/identify.h"
+
+#ifdef IMPACTLAB_MINPACK
+#include <cminpack.h>
+#endif
+
+// Tolerances of a minimisation, relative, of the sum of squares and of the unknowns: of
+// parts of the traces, of whole ones, and where the best is refined.
+#define TOLERANCE_PART  1e-2
+#define TOLERANCE_WHOLE 1e-4
+#define TOLERANCE_BEST  1e-9
+// Sums of squares of one minimum differ by less than this share and this number.
+#define SAME_SHARE  1e-3
+#define SAME_NUMBER 1.0
+
+enum {
+    MOST_STEPS = 60,     // of a minimisation
+    PARTS = 4,           // in which a search takes the traces
+    SCENARIOS_STARTS = 2 // with the scenario's parameters
+};
+
+typedef struct search {
+    identification *id;
+    random_generator random;
+    double best[IDENTIFY_UNKNOWNS]; // of those that were evaluated, in their scales
+    double least;                   // its sum of squares; NaN before the first
+    double *residual, *jacobian;    // room for one set of unknowns
+    double *sets, *set_residuals;   // room for those that are screened
+    status code;                    // of an evaluation, for MINPACK's caller
+    fault *f;
+} search;
+
+status identify_available(fault *f)
+{
+#ifdef IMPACTLAB_MINPACK
+    (void)f;
+    return STATUS_OK;
+#else
+    return fault_set(f, STATUS_NOT_ALLOWED,
+                     "identify needs MINPACK, which this program was built without: "
+                     "install libcminpack-dev and build again");
+#endif
+}
+
+static double sum_of_squares(const double *residual, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        sum += residual[i] * residual[i];
+    }
+    return sum;
+}
+
+// Keeps a set of unknowns as the best one if its sum of squares, of whole traces, is
+// below the least one so far, or the first one.
+static void keep_least(search *s, const double *x, double squares)
+{
+    if (s->id->part == 1 && !(squares >= s->least)) {
+        s->least = squares;
+        memcpy(s->best, x, (size_t)s->id->unknowns * sizeof *x);
+    }
+}
+
+#ifdef IMPACTLAB_MINPACK
+// MINPACK's function: with the flag 1 it asks for the residuals at x, else for the
+// Jacobian. A negative result ends the search.
+static int evaluate_for_minpack(void *context, int m, int n, const double *x,
+                                double *residual, double *jacobian, int rows, int flag)
+{
+    search *s = context;
+    const bool wants_residuals = flag == 1, judge = false;
+    (void)m, (void)n, (void)rows;
+    if (wants_residuals) {
+        s->code = identify_evaluate(s->id, x, 1, NULL, judge, residual, NULL, s->f);
+    } else {
+        s->code = identify_jacobian(s->id, x, jacobian, s->f);
+    }
+    if (s->code == STATUS_OK && wants_residuals) {
+        keep_least(s, x, sum_of_squares(residual, s->id->residuals));
+    }
+    if (s->code == STATUS_OK) {
+        return 0;
+    }
+    return -1;
+}
+
+// Minimises the sum of squares by Levenberg and Marquardt's method, from x on, until
+// steps gain and change less than the tolerance. *squares receives the sum of squares.
+static status minimise(search *s, double tolerance, double *x, double *squares)
+{
+    const int m = (int)s->id->residuals, n = s->id->unknowns;
+    double diagonal[IDENTIFY_UNKNOWNS], work[4][IDENTIFY_UNKNOWNS];
+    SCOPED(free_kept) double *more = calloc((size_t)m, sizeof *more);
+    int pivots[IDENTIFY_UNKNOWNS], evaluations, jacobians;
+    if (more == NULL) {
+        return fault_no_memory(s->f);
+    }
+    s->code = STATUS_OK;
+    lmder(evaluate_for_minpack, s, m, n, x, s->residual, s->jacobian, m, tolerance,
+          tolerance, 0, MOST_STEPS, diagonal, 1, 1, 0, &evaluations, &jacobians, pivots,
+          work[0], work[1], work[2], work[3], more);
+    *squares = sum_of_squares(s->residual, (size_t)m);
+    return s->code;
+}
+#else
+static status minimise(search *s, double tolerance, double *x, double *squares)
+{
+    (void)tolerance, (void)x, (void)squares;
+    return identify_available(s->f);
+}
+#endif
+
+// --- starts ----------------------------------------------------------------------------
+
+// Sets the unknowns x to start from: the scenario's parameters, and for each trace its
+// own first guess. That takes the angle at the start from the encoder. With
+// `offset_unknown` the encoder may count from any angle: the scenario tells the angle,
+// and the difference goes to the encoder's offset.
+static void begin_with(const identification *id, bool offset_unknown, double *x)
+{
+    const double angle = id->base->parameters.initial.angle;
+    for (int n = 0; n < id->unknowns; n++) {
+        const unknown *u = &id->unknown[n];
+        double value = *u->value;
+        if (offset_unknown && u->trace >= 0) {
+            const double *own = id->traces[u->trace].own;
+            if (u->index == OWN_ANGLE) {
+                value = angle;
+            } else if (u->index == OWN_OFFSET) {
+                value = own[OWN_OFFSET] + (own[OWN_ANGLE] - angle);
+            }
+        }
+        x[n] = value / u->scale;
+    }
+}
+
+// Draws the parameters of a start from their ranges, or from half to twice the scenario's
+// value.
+static void draw_parameters(search *s, double *x)
+{
+    for (int i = 0; i < s->id->count; i++) {
+        const fitted_parameter *fit = &s->id->fit[i];
+        const double u = random_uniform(&s->random);
+        if (fit->axis.is_range) {
+            x[i] = sweep_axis_value_at(&fit->axis, u) / fit->scale;
+        } else if (u < 0.5) {
+            x[i] *= 0.5 + u;
+        } else {
+            x[i] *= 2 * u;
+        }
+    }
+}
+
+// Draws sets of unknowns, and copies the one with the least sum of squares over the first
+// part of the traces to x.
+static status draw_start(search *s, double *x)
+{
+    identification *id = s->id;
+    const size_t m = id->residuals, n = (size_t)id->unknowns;
+    const bool judge = false;
+    double least = HUGE_VAL;
+    for (size_t k = 0; k < IDENTIFY_SCREENED; k++) {
+        const bool offset_unknown = k % 2 != 0;
+        begin_with(id, offset_unknown, s->sets + k * n);
+        draw_parameters(s, s->sets + k * n);
+    }
+    id->part = 1.0 / PARTS;
+    TRY(identify_evaluate(id, s->sets, IDENTIFY_SCREENED, NULL, judge, s->set_residuals,
+                          NULL, s->f));
+    for (size_t k = 0; k < IDENTIFY_SCREENED; k++) {
+        const double squares = sum_of_squares(s->set_residuals + k * m, m);
+        if (squares < least) {
+            least = squares;
+            memcpy(x, s->sets + k * n, n * sizeof *x);
+        }
+    }
+    return STATUS_OK;
+}
+
+// --- searches --------------------------------------------------------------------------
+
+// Minimises over the first part of the traces, then over more and more of them.
+static status minimise_in_parts(search *s, double *x, double *squares)
+{
+    for (int part = 1; part < PARTS; part++) {
+        s->id->part = (double)part / PARTS;
+        TRY(minimise(s, TOLERANCE_PART, x, squares));
+    }
+    s->id->part = 1;
+    return minimise(s, TOLERANCE_WHOLE, x, squares);
+}
+
+// Counts how often the least minimum was reached, after a search has ended in another
+// one, `squares`; before that the least was `least`.
+static void count_minimum(identification *id, double squares, double least, bool is_drawn)
+{
+    const double same = SAME_SHARE * least + SAME_NUMBER;
+    if (!(squares > least - same)) {
+        id->reached = 0;
+    }
+    if (is_drawn && !(squares > least + same)) {
+        id->reached++;
+    }
+}
+
+// Searches from one start after the other, and refines the best result.
+static status search_from_starts(search *s)
+{
+    identification *id = s->id;
+    double x[IDENTIFY_UNKNOWNS], squares;
+    random_seed(&s->random, id->seed);
+    id->searches = id->reached = 0;
+
+    // a search that is stopped soon has the scenario's values
+    const bool offset_unknown = false, judge = false;
+    begin_with(id, offset_unknown, x);
+    TRY(identify_evaluate(id, x, 1, NULL, judge, s->residual, NULL, s->f));
+    keep_least(s, x, sum_of_squares(s->residual, id->residuals));
+
+    double least = (double)NAN; // of the minima
+    while (id->searches < id->starts && id->reached < IDENTIFY_CONFIRMED) {
+        const bool is_drawn = id->searches >= SCENARIOS_STARTS;
+        if (is_drawn) {
+            TRY(draw_start(s, x));
+        } else {
+            begin_with(id, id->searches == 1, x);
+        }
+        TRY(minimise_in_parts(s, x, &squares));
+        count_minimum(id, squares, least, is_drawn);
+        least = fmin(least, squares);
+        id->searches++;
+    }
+    memcpy(x, s->best, sizeof x);
+    return minimise(s, TOLERANCE_BEST, x, &squares);
+}
+
+bool identify_settled(const identification *id)
+{
+    return id->starts <= SCENARIOS_STARTS || id->reached >= IDENTIFY_CONFIRMED;
+}
+
+status identify_search(identification *id, double *x, double *least, fault *f)
+{
+    const size_t m = id->residuals, n = (size_t)id->unknowns;
+    SCOPED(free_kept)
+    double *room = calloc(IDENTIFY_SCREENED * (n + m) + m + m * n, sizeof *room);
+    if (room == NULL) {
+        return fault_no_memory(f);
+    }
+    search s = {.id = id, .least = (double)NAN, .f = f};
+    s.sets = room;
+    s.set_residuals = s.sets + IDENTIFY_SCREENED * n;
+    s.residual = s.set_residuals + IDENTIFY_SCREENED * m;
+    s.jacobian = s.residual + m;
+    const status code = search_from_starts(&s);
+    memcpy(x, s.best, n * sizeof *x);
+    *least = s.least;
+    return code;
+}
