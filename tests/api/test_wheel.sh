@@ -61,3 +61,16 @@ if /usr/bin/python3 -c 'import mypy' 2>/dev/null; then
 else
     echo "skipped: python3-mypy is missing, no test of types"
 fi
+
+# the notebook of the examples, with the lab's figures where the program is on the path
+if env/bin/python -c 'import nbconvert, ipykernel' 2>/dev/null; then
+    cp "$source/docs/examples/figure-5-7.ipynb" .
+    env/bin/python -m ipykernel install --sys-prefix >said 2>&1 || fail "$(tail said)"
+    PATH=$(dirname "$lab"):$PATH env/bin/python -m nbconvert --to html --execute figure-5-7.ipynb >said 2>&1 ||
+        fail "$(tail said)"
+    [ "$(grep -o 'src="data:image/svg+xml;base64' figure-5-7.html | wc -l)" -ge 2 ] ||
+        fail "the page of the notebook lacks the figures of its runs"
+    grep -q 'impact+contact' figure-5-7.html || fail "the page of the notebook lacks its table"
+else
+    echo "skipped: python3-nbconvert or python3-ipykernel is missing, no test of the notebook"
+fi
