@@ -51,9 +51,7 @@ function needsOtherFiles(text) {
 
 const start = createRequire(import.meta.url)(join(folder, "impactlab.js"));
 const wasmBinary = readFileSync(join(folder, "impactlab.wasm"));
-const names = wanted.length
-  ? wanted
-  : native("list", "--json", "-").match(/(?<="name": ")[^"]*/g);
+const names = wanted.length ? wanted : native("list", "--json", "-").match(/(?<="name": ")[^"]*/g);
 let compared = 0;
 let left = 0;
 let wrong = 0;

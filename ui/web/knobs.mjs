@@ -169,6 +169,7 @@ export function createKnobs(host, tables, { onChange, sweep }) {
     }
     const { range, values, peaks } = knob.peaks;
     const known = peaks.filter((peak) => peak !== null);
+    knob.over.dataset.known = peaks.length;
     const most = Math.max(...known, 1e-12);
     const width = knob.over.clientWidth;
     const height = knob.over.clientHeight;

@@ -43,6 +43,7 @@ export function labOf(module) {
     yaml: () => read(module._page_yaml()),
     csv: () => read(module._page_csv()),
     run: (seconds, withRows) => read(module._page_run(seconds, withRows ? 1 : 0)),
+    account: () => JSON.parse(read(module._page_account())),
     predictions: () => read(module._page_predictions()),
     rows: () => module._page_rows(),
     freedoms: () => module._page_freedoms(),

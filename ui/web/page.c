@@ -9,6 +9,7 @@
 #include "src/rig/rig.h"
 #include "src/run/export.h"
 #include "src/run/run.h"
+#include "src/session/account.h"
 
 static scenario opened;  // as its text says
 static scenario changed; // with what was changed in the page
@@ -293,6 +294,21 @@ EMSCRIPTEN_KEEPALIVE const char *page_predictions(void)
         return answer_json(json_null());
     }
     return answer_json(export_predictions(&changed, &result, row, answers));
+}
+
+EMSCRIPTEN_KEEPALIVE const char *page_account(void)
+{
+    char line[ACCOUNT_SENTENCE] = "", sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
+    json_t *array = json_array();
+    int count = 0;
+    if (result.trace.row_count > 0) {
+        run_account_line(&result, line);
+        count = run_account(&changed, &result, sentences);
+    }
+    for (int i = 0; i < count; i++) {
+        json_add(array, json_text(sentences[i]));
+    }
+    return answer_json(json_of("line:t sentences:o", line, array));
 }
 
 EMSCRIPTEN_KEEPALIVE int page_rows(void)

@@ -33,6 +33,10 @@ const char *page_run(double seconds, int with_rows);
 // What `predict --json` writes, null if the arm never touches after a flight.
 const char *page_predictions(void);
 
+// What happened in the run, for people: {line, sentences}, the line for beside its
+// numbers.
+const char *page_account(void);
+
 // Rows of the run, degrees of freedom of the arm, and their angles row by row [rad].
 int page_rows(void);
 int page_freedoms(void);

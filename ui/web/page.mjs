@@ -12,7 +12,6 @@ import {
   fillStrip,
   peakKey,
   summaryOf,
-  whyOf,
 } from "./results.mjs";
 import { FIRST_SCENARIO, MOST_KEPT, hashOf, stateOf } from "./state.mjs";
 import { RUN_COLOURS, element, fillTable, measured, shortName } from "./words.mjs";
@@ -20,6 +19,7 @@ import { RUN_COLOURS, element, fillTable, measured, shortName } from "./words.mj
 const RUN_SECONDS = 8; // of computing, then a run ends with what it has
 const MOST_SECONDS = 12; // then the worker is ended
 const USUAL_PANES = ["gap", "hub_velocity", "command"]; // the last one under a law
+const MOST_HASH = 50000; // letters of a link
 const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2];
 const at = (id) => document.getElementById(id);
 
@@ -119,7 +119,10 @@ function keep() {
 let hashTimer = 0;
 function writeHash() {
   clearTimeout(hashTimer);
-  hashTimer = setTimeout(() => window.history.replaceState(null, "", hashOf(state)), 300);
+  hashTimer = setTimeout(() => {
+    const hash = hashOf(state);
+    window.history.replaceState(null, "", hash.length < MOST_HASH ? hash : "#");
+  }, 300);
 }
 
 // --- computing -------------------------------------------------------------------------------
@@ -137,11 +140,11 @@ function labelOf(changes) {
 }
 
 // A run of the scenario with changes; null if a newer one came before it.
-async function runOf(changes, more, options) {
+async function runOf(changes, options) {
   const every = tables.signals.map(({ name }) => name);
   const signals = neededSignals(state.show ?? USUAL_PANES).filter((name) => every.includes(name));
   const answer = await engine.ask(requestOf("run", changes, { signals }), options);
-  return answer && { ...answer, ...more, changes, label: labelOf(changes) };
+  return answer && { ...answer, changes, label: labelOf(changes) };
 }
 
 function besideWanted() {
@@ -149,7 +152,7 @@ function besideWanted() {
 }
 
 // Computes the reference, which is the scenario as it was opened, and the runs that are kept.
-async function runBeside() {
+async function runBeside(run) {
   const wanted = besideWanted();
   if (wanted === besideOf) {
     return false;
@@ -161,13 +164,13 @@ async function runBeside() {
   ];
   const found = [];
   for (const [changes, more] of entries) {
-    const run = await runOf(changes, more);
+    const same = JSON.stringify(changes) === JSON.stringify(run.changes);
+    found.push({ ...(same ? run : await runOf(changes)), ...more });
     if (wanted !== besideWanted()) {
       return false;
     }
-    found.push(run);
   }
-  beside = found.filter((run) => !run.scenario.faults);
+  beside = found.filter(({ scenario }) => !scenario.faults);
   return true;
 }
 
@@ -180,13 +183,14 @@ async function refresh() {
     beside = [];
   }
   const asked = state;
+  document.body.dataset.state = "busy";
   try {
-    const run = await runOf(state.changes, {}, { newest: true });
+    const run = await runOf(state.changes, { newest: true });
     if (run === null) {
       return;
     }
     take(run);
-    if ((await runBeside()) && asked === state) {
+    if ((await runBeside(run)) && asked === state) {
       take(run);
     }
     if (asked === state && !run.scenario.faults) {
@@ -195,6 +199,9 @@ async function refresh() {
   } catch (error) {
     besideOf = "";
     complain(error.message);
+  }
+  if (asked === state) {
+    requestAnimationFrame(() => (document.body.dataset.state = "drawn"));
   }
 }
 
@@ -237,8 +244,10 @@ function draw() {
   at("title").textContent = scenario.title;
   at("title").title = scenario.description;
   fillStrip(at("strip"), runs, (kept) => change({ kept: state.kept.filter((_, i) => i !== kept) }));
-  at("why").textContent = whyOf(run);
-  complain(result.message);
+  at("why").firstElementChild.textContent = run.account.line;
+  at("why").lastElementChild.textContent = run.account.sentences.join(" ");
+  const late = run.late ? `; in the page a run computes for ${RUN_SECONDS} s at most` : "";
+  complain(result.message + late);
   knobs.update(scenario, state.changes);
   plots.draw(runs, panesOf(scenario), instant());
   arm.draw(runs, instant());
@@ -315,8 +324,14 @@ function seek(time) {
 
 function step(rows) {
   const { time } = runs[0].signals;
+  let row = rowAt(time, instant());
+
+  // several rows of one instant are one step back
+  while (rows < 0 && row > 0 && time[row - 1] === time[row]) {
+    row -= 1;
+  }
   playing = false;
-  seek(time[Math.min(Math.max(rowAt(time, instant()) + rows, 0), time.length - 1)]);
+  seek(time[Math.min(Math.max(row + rows, 0), time.length - 1)]);
 }
 
 function toEvent(by) {
@@ -407,7 +422,12 @@ async function writeChanges() {
 }
 
 async function copyLink() {
-  window.history.replaceState(null, "", hashOf(state));
+  const hash = hashOf(state);
+  if (hash.length >= MOST_HASH) {
+    complain("The file is too long for a link; save it as YAML and send that.");
+    return;
+  }
+  window.history.replaceState(null, "", hash);
   try {
     await navigator.clipboard.writeText(location.href);
     at("link").textContent = "Copied";

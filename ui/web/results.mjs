@@ -1,6 +1,5 @@
 // What a run came to, in words and tables: the strip, why, predictors, events, all numbers.
 import { RUN_COLOURS, digits, element, fillTable, measured } from "./words.mjs";
-import { rowAt } from "./arm.mjs";
 
 // The number that is the peak: on a rigid wall that of many links has no limit, what a sensor of
 // 1 ms sees has one.
@@ -12,18 +11,14 @@ export function peakKey(values) {
 function columnsOf(values) {
   const peak = peakKey(values);
   const columns = [
-    [peak === "peak_force_N" ? "peak" : "peak, 1 ms", peak, "N"],
+    [peak === "peak_force_N" ? "peak" : "peak of 1 ms", peak, "N"],
     ["impulse", "contact_impulse_Ns", "N s"],
-    ["bounces", "separations", ""],
     ["steady", "steady_force_N", "N"],
   ];
   if (values["control.law"] !== "none") {
-    columns.push(
-      ["overshoot", "force_overshoot_percent", "%"],
-      ["settled", "settling_time_s", "s"],
-    );
+    columns.push(["over", "force_overshoot_percent", "%"], ["settled", "settling_time_s", "s"]);
   }
-  return columns;
+  return [...columns, ["bounces", "separations", ""]];
 }
 
 function differenceOf(value, reference, unit) {
@@ -57,21 +52,6 @@ export function fillStrip(table, runs, drop) {
   fillTable(table, ["run", ...columns.map(([word]) => word)], rows);
 }
 
-// How the first impact comes about, in a line.
-export function whyOf({ result, signals }) {
-  const hit = result.events.find(({ kind }) => kind === "impact");
-  if (hit === undefined) {
-    return result.first_contact_s === null
-      ? "It never touches the wall."
-      : "It touches without a blow.";
-  }
-  const row = rowAt(signals.time, hit.t_s - 1e-9);
-  const energy = signals.kinetic_energy[row] + signals.strain_energy[row];
-  const share = digits((100 * hit.loss_J) / energy, 2);
-  const part = Number.isFinite(energy) ? `, ${share} % of the arm's energy` : "";
-  return `Hits at ${measured(hit.speed_m_s, "m/s")} after ${measured(hit.t_s, "s")}; the blow takes ${measured(hit.loss_J, "J")}${part}.`;
-}
-
 // The same for who cannot see the curves.
 export function summaryOf(runs) {
   const [run] = runs;
@@ -80,7 +60,7 @@ export function summaryOf(runs) {
     columns.map(([word, key, unit]) => `${word} ${measured(result[key], unit)}`).join(", ");
   const reference = runs.find(({ isReference }) => isReference);
   const beside = reference && reference !== run ? ` The reference: ${tell(reference)}.` : "";
-  return `${run.label}: ${tell(run)}. ${whyOf(run)}${beside}`;
+  return `${run.label}: ${tell(run)}. ${run.account.sentences.join(" ")}${beside}`;
 }
 
 export function fillPredictors(table, { predictions }) {

@@ -63,7 +63,9 @@ const answers = {
     if (scenario.faults) {
       return { scenario };
     }
+    const start = performance.now();
     const result = JSON.parse(lab.run(request.seconds, true));
+    const late = performance.now() - start > 1e3 * request.seconds;
     const predictions = JSON.parse(lab.predictions());
     const time = lab.signal("time");
     const rows = keptRows(lab.signal("force"));
@@ -76,7 +78,9 @@ const answers = {
     return {
       scenario,
       result,
+      late,
       predictions,
+      account: lab.account(),
       rows: time.length,
       signals,
       poses: posesOf(time, links),
