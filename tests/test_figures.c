@@ -229,7 +229,7 @@ TEST(figures_are_asked_for_by_id)
 
 TEST(the_report_stands_alone)
 {
-    DONE(report_write("report", NULL, 0, NULL, &f));
+    DONE(report_write("report", &(report_request){0}, NULL, &f));
     KEPT_TEXT(html) = file_text("report/report.html");
     for (const char *at = strstr(html, "src="); at != NULL; at = strstr(at + 1, "src=")) {
         assert_int_equal(strncmp(at, "src=\"data:image/png;base64,", 27), 0);
@@ -256,10 +256,29 @@ TEST(the_report_stands_alone)
     assert_false(file_has("report/report.pdf", "/Type3"));
 }
 
+TEST(a_live_report_holds_the_page_and_what_it_opens)
+{
+    char first_impact[] = "corrected/first-impact";
+    char *const names[] = {first_impact};
+    report_request what = {names, 1, "no-page.html"};
+    REFUSED(STATUS_CANNOT_READ, "ninja -C build web",
+            report_write("live", &what, NULL, &f));
+
+    // "<p>the page</p>" in base64
+    put_file("page.html", "<p>the page</p>");
+    what.page = "page.html";
+    DONE(report_write("live", &what, NULL, &f));
+    KEPT_TEXT(html) = file_text("live/report.html");
+    assert_non_null(strstr(html, "id=\"lab\">PHA+dGhlIHBhZ2U8L3A+<"));
+    assert_non_null(
+        strstr(html, "data-live=\"scenario=corrected/first-impact&amp;text="));
+    assert_non_null(strstr(html, "<svg"));
+}
+
 TEST(a_report_without_a_folder_is_complained_about)
 {
     REFUSED(STATUS_CANNOT_WRITE, "/proc/nowhere",
-            report_write("/proc/nowhere", NULL, 0, NULL, &f));
+            report_write("/proc/nowhere", &(report_request){0}, NULL, &f));
 }
 
 // --- what follows the thesis: captions, axes and numbers, by equations that the drawing

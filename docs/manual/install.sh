@@ -1,7 +1,7 @@
 #!/bin/sh
-# Installs the manual if it has been built.
+# Installs a page, such as the manual, if it has been built.
 #
-#   install.sh MANUAL.html FOLDER
+#   install.sh PAGE.html FOLDER
 set -eu
 case $2 in
 /*) folder=${DESTDIR:-}$2 ;;
@@ -9,5 +9,5 @@ case $2 in
 esac
 if [ -e "$1" ]; then
     mkdir -p "$folder"
-    cp "$1" "$folder/manual.html"
+    cp "$1" "$folder"
 fi

@@ -169,11 +169,18 @@ bool recipe_is(const char *path);
 // --- the report: every figure and table of the catalogue, or the given runs and recipes,
 // each with its origin and the command that makes it, as one web page and one PDF
 
+// What a report is of.
+typedef struct report_request {
+    char *const *names; // scenarios and recipe files
+    int count;          // of them; 0: the catalogue
+    const char *page; // file with the lab's page, which then stands under each figure of
+                      // one scenario; NULL: none
+} report_request;
+
 // Writes FOLDER/report.html, which needs no other file and no network, and
-// FOLDER/report.pdf. `names` are `count` scenarios and recipe files; without any the
-// catalogue is shown. The folder is created if it does not exist. Returns the status of
+// FOLDER/report.pdf. The folder is created if it does not exist. Returns the status of
 // runs and writing; STATUS_STOPPED if `monitor` (may be NULL) requested it, with both
 // files unchanged. Counts in the monitor each item when it is computed and again when it
 // is drawn on the page.
-status report_write(const char *folder, char *const *names, int count,
-                    run_monitor *monitor, fault *f);
+status report_write(const char *folder, const report_request *what, run_monitor *monitor,
+                    fault *f);

@@ -18,6 +18,7 @@
 typedef struct report_item {
     const char *scenario, *model; // scenario may be NULL
     char *command;                // NULL: no command
+    char *live; // what the lab's page opens for it, as its address has it; NULL: nothing
     artwork drawn;
     int page; // of the PDF, counted from 1
 } report_item;
@@ -26,6 +27,7 @@ typedef struct report_content {
     GArray *items;       // of report_item
     const char *preface; // description of the report, a sentence or two
     char *heading;
+    char *page;           // the lab's page, in base64; NULL: none
     run_monitor *monitor; // NULL: nobody looks on
 } report_content;
 
@@ -435,6 +437,9 @@ static status add_figure(GString *html, const report_item *item, guint index,
     p.dpi = SCREEN_DPI; // of what has too many cells for paths
     g_autofree char *alternative = text_escape(p.alternative);
     text_append(html, "<figure role=\"img\" aria-label=\"%s\"", alternative);
+    if (item->live != NULL) {
+        text_append(html, " data-live=\"%s\"", item->live);
+    }
 
     // a map as pixels, anything else as paths
     if (drawn.plotted != NULL && drawn.plotted->panels[0].map != NULL) {
@@ -512,6 +517,11 @@ static status write_html(const report_content *r, const char *path, fault *f)
             TRY(item_done(r, f));
         }
     }
+    if (r->page != NULL) {
+        g_string_append(html, "<script type=\"text/plain\" id=\"lab\">");
+        g_string_append(html, r->page);
+        g_string_append(html, "</script>\n");
+    }
     g_string_append(html, "<script>\n");
     g_string_append(html, uPlot_iife_min_js);
     g_string_append(html, report_js);
@@ -535,6 +545,9 @@ static status add_catalogue(report_content *r, fault *f)
         report_item item = {.scenario = which->scenario, .model = which->model};
         TRY(figure_open(which, &options, &item.drawn, f));
         item.command = text_printf("impactlab figures %s", which->id);
+        if (r->page != NULL && which->scenario != NULL && item.drawn.plotted != NULL) {
+            item.live = text_printf("scenario=%s", which->scenario);
+        }
         g_array_append_val(r->items, item);
         TRY(item_done(r, f));
     }
@@ -556,16 +569,32 @@ static void clear_item(gpointer data)
     report_item *item = data;
     artwork_finish(&item->drawn);
     g_free(item->command);
+    g_free(item->live);
 }
 
 // ---- scenarios and recipes of one's own
 
+// What the page opens for a scenario: its file, as it knows shipped ones only. NULL if
+// that cannot be read.
+static char *live_scenario(const scenario *s)
+{
+    g_autofree char *text = NULL;
+    gsize length = 0;
+    if (!g_file_get_contents(s->file, &text, &length, NULL)) {
+        return NULL;
+    }
+    g_autofree char *code = g_base64_encode((const guchar *)text, length);
+    g_autofree char *escaped = g_uri_escape_string(code, NULL, false);
+    g_autofree char *name = g_uri_escape_string(s->name, "/", false);
+    return text_printf("scenario=%s&amp;text=%s", name, escaped);
+}
+
 // A scenario of one's own, with its usual panels.
 static status open_scenario_item(report_item *item, const char *name,
-                                 run_monitor *monitor, fault *f)
+                                 const report_content *r, fault *f)
 {
     const scenario *s;
-    TRY(scenario_figure_open(name, monitor, &item->drawn, &s, f));
+    TRY(scenario_figure_open(name, r->monitor, &item->drawn, &s, f));
     item->scenario = s->name;
     if (s->parameters.arm.model == ARM_PRINTED) {
         item->model = "printed";
@@ -573,6 +602,9 @@ static status open_scenario_item(report_item *item, const char *name,
         item->model = "corrected";
     }
     item->command = text_printf("impactlab run %s --plot FILE.pdf", name);
+    if (r->page != NULL) {
+        item->live = live_scenario(s);
+    }
     return STATUS_OK;
 }
 
@@ -601,7 +633,7 @@ static status add_named(report_content *r, char *const *names, int count, fault 
         if (recipe_is(names[i])) {
             TRY(open_recipe_item(&item, names[i], f));
         } else {
-            TRY(open_scenario_item(&item, names[i], r->monitor, f));
+            TRY(open_scenario_item(&item, names[i], r, f));
         }
         g_array_append_val(r->items, item);
         TRY(item_done(r, f));
@@ -611,14 +643,32 @@ static status add_named(report_content *r, char *const *names, int count, fault 
 
 // ---- the whole
 
+// Takes the lab's page into the report.
+static status read_page(report_content *r, const char *path, fault *f)
+{
+    g_autofree char *page = NULL;
+    gsize length = 0;
+    if (!g_file_get_contents(path, &page, &length, NULL)) {
+        return fault_set(
+            f, STATUS_CANNOT_READ,
+            "the lab's page %s cannot be read, 'ninja -C build web' makes it", path);
+    }
+    r->page = g_base64_encode((const guchar *)page, length);
+    return STATUS_OK;
+}
+
 // Fills the report with the items that are named, or with the catalogue where none is,
 // and writes it into a folder, as HTML and as PDF.
-static status write_both(report_content *r, const char *folder, char *const *names,
-                         int count, fault *f)
+static status write_both(report_content *r, const char *folder,
+                         const report_request *what, fault *f)
 {
+    if (what->page != NULL) {
+        TRY(read_page(r, what->page, f));
+    }
+
     // what was asked for, or all there is
-    if (count > 0) {
-        TRY(add_named(r, names, count, f));
+    if (what->count > 0) {
+        TRY(add_named(r, what->names, what->count, f));
     } else {
         TRY(add_catalogue(r, f));
         add_parameters(r);
@@ -640,10 +690,10 @@ static const char preface_of_names[] =
     "Runs and recipes, drawn by the lab. Below each are its scenario, its model and the "
     "command that reproduces it.";
 
-status report_write(const char *folder, char *const *names, int count,
-                    run_monitor *monitor, fault *f)
+status report_write(const char *folder, const report_request *what, run_monitor *monitor,
+                    fault *f)
 {
-    assert(names != NULL || count == 0);
+    assert(what->names != NULL || what->count == 0);
     fault why = {0};
     g_autoptr(GArray) items = g_array_new(FALSE, TRUE, sizeof(report_item));
     g_array_set_clear_func(items, clear_item);
@@ -653,10 +703,11 @@ status report_write(const char *folder, char *const *names, int count,
                         .items = items,
                         .heading = heading,
                         .preface = preface_of_thesis};
-    if (count > 0) {
+    if (what->count > 0) {
         r.preface = preface_of_names;
     }
-    const status code = write_both(&r, folder, names, count, &why);
+    const status code = write_both(&r, folder, what, &why);
+    g_free(r.page);
     if (code == STATUS_OK) {
         return code;
     }

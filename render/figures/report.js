@@ -109,7 +109,32 @@ const explore = (figure, index) => {
   addEventListener('resize', () => charts.forEach(u => u.setSize({width: place.clientWidth, height: 260})));
   darkness.addEventListener('change', () => charts.length && draw());
 };
+// the lab's page in the place of a drawing, where the report holds it
+let page = '';
+const enliven = figure => {
+  const row = document.createElement('div');
+  row.className = 'buttons';
+  figure.append(row);
+  let frame = null;
+  button(row, 'Move its knobs', b => {
+    const on = frame === null;
+    figure.classList.toggle('live', on);
+    b.textContent = on ? 'Back to the drawing' : 'Move its knobs';
+    if (on) {
+      const bytes = () => Uint8Array.from(atob(document.querySelector('#lab').textContent), c => c.charCodeAt(0));
+      page = page || URL.createObjectURL(new Blob([bytes()], {type: 'text/html'}));
+      frame = document.createElement('iframe');
+      frame.title = figure.getAttribute('aria-label');
+      frame.src = page + '#' + figure.dataset.live + '&embedded=yes';
+      figure.insertBefore(frame, row);
+    } else {
+      frame.remove();
+      frame = null;
+    }
+  });
+};
 if (typeof document !== 'undefined') {
+  if (document.querySelector('#lab')) { document.querySelectorAll('figure[data-live]').forEach(enliven); }
   document.querySelector('#hint').hidden = false;
   document.querySelectorAll('figure[data-panels]').forEach(explore);
 }

@@ -6,6 +6,7 @@ typedef enum shipped_part {
     SHIPPED_SCENARIOS, // the folder of the scenarios that ship
     SHIPPED_MANUAL,    // the folder with README.md and docs
     SHIPPED_PROGRAM,   // impactlab
+    SHIPPED_PAGE,      // the lab's page for a browser in one file, if it was built
 } shipped_part;
 
 // The part's path, to be freed, whether it is there or not; NULL without memory. The

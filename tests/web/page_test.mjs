@@ -424,6 +424,26 @@ const tests = {
     await page.close();
   },
 
+  async "a report's figure moves, and its drawing comes back"() {
+    const report = join(files, "report");
+    execFileSync(program, ["report", "corrected/first-impact", "--live", "-q", "-o", report]);
+    const page = await browser.newPage();
+    await page.goto(`file://${report}/report.html`);
+    const press = (text) =>
+      page.evaluate((wanted) => {
+        const all = [...document.querySelectorAll("button")];
+        all.find((button) => button.textContent === wanted).click();
+      }, text);
+    await press("Move its knobs");
+    const frame = await page.waitForFrame((one) => one.url().startsWith("blob:"));
+    await settled(frame);
+    near(await peakOf(frame), 1.34, 0.005);
+    assert.equal(await page.$eval(".drawing", (one) => one.clientHeight), 0);
+    await press("Back to the drawing");
+    assert.ok((await page.$eval(".drawing", (one) => one.clientHeight)) > 0);
+    await page.close();
+  },
+
   async "a damaged link is no end"() {
     for (const hash of [
       "#scenario=no/such&at=x",

@@ -117,6 +117,7 @@ typedef struct arguments {
     bool quiet;
     bool fitted; // --fitted
     bool single; // --float, of export
+    bool live;   // of report
 
     // what is run
     option_list sets;                 // --set

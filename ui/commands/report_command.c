@@ -1,7 +1,10 @@
 // impactlab report: figures and tables as one web page and one PDF.
 #include "ui/commands/command.h"
 
+#include <stdlib.h>
+
 #include "render/figures/figures.h"
+#include "src/base/shipped.h"
 #include "ui/commands/progress.h"
 
 // The command: writes the report of what is named, else of the whole thesis.
@@ -20,7 +23,13 @@ static int write_report(const arguments *a)
     const int steps = 2 * items;
     fault f = {0};
     run_monitor *monitor = work_begin(a, "steps", steps);
-    const status code = report_write(folder, a->operands, a->operand_count, monitor, &f);
+    char *page = NULL;
+    if (a->live) {
+        page = shipped_path(SHIPPED_PAGE);
+    }
+    const report_request what = {a->operands, a->operand_count, page};
+    const status code = report_write(folder, &what, monitor, &f);
+    free(page);
     work_end();
 
     if (code == STATUS_STOPPED) {
@@ -39,6 +48,9 @@ static int write_report(const arguments *a)
 
 static const option_row report_rows[] = {
     OUTPUT_OPTION(PLACE, "FOLDER", "folder to write to (report)"),
+    OPTION(FLAG, "live", NULL,
+           "under each figure of a scenario the lab's page, whose knobs move it",
+           PLACE(live)),
 };
 
 const command report_command = {

@@ -541,12 +541,16 @@ function listen() {
 }
 
 async function begin() {
+  document.body.classList.toggle("embedded", new URLSearchParams(location.hash).has("embedded"));
   const [binary, listed] = await Promise.all([
     partOf("part-wasm", "impactlab.wasm"),
     partOf("part-scenarios", "scenarios.json"),
   ]);
   const scenarios = JSON.parse(new TextDecoder().decode(listed));
   catalogue = new Map(scenarios.map((one) => [one.name, one]));
+  if (state.text === catalogue.get(state.scenario)?.text) {
+    state.text = null; // it was not edited
+  }
   const compiled = await WebAssembly.compile(binary);
   const url = workerUrl();
   const startWorker = () => {
