@@ -69,7 +69,7 @@ static status print_run(const scenario *s)
     json_t *object = export_run(s, &result);
     json_write(stdout, object);
     json_decref(object);
-    export_csv(stdout, &result.trace, s->parameters.arm.links);
+    export_csv(stdout, s, &result.trace);
     if (s->parameters.arm.model == ARM_CORRECTED) {
         print_prediction(&s->parameters, &result);
     }

@@ -118,29 +118,18 @@ TEST(missed_expectations_say_what_is_and_what_was_expected)
               "t.yaml:4:3: peak_force_N is nothing (null), expected 2 within 0.5\n");
 }
 
-// CSV of a trace of two rows with three angles each, on the heap.
-// A run's CSV, with or without a value of a sensor that need not be there.
-static char *csv_of(int links, double film)
+// CSV of two rows with three angles each, of a scenario.
+static char *csv_of(const char *told, double film)
 {
+    KEPT_SCENARIO(s) = parse(told);
     SCOPED(trace_finish) trace t;
     trace_init(&t, 3);
     for (int i = 0; i < 2; i++) {
-        sample row = {.time = 0.1 * i,
-                      .force = 2.5,
-                      .piezo_force = (double)NAN,
-                      .film = film,
-                      .accelerometer = (double)NAN,
-                      .wall_energy = (double)NAN,
-                      .wall_loss = (double)NAN,
-                      .wall_place = (double)NAN,
-                      .wall_work = (double)NAN,
-                      .weight_energy = (double)NAN,
-                      .face_depth = (double)NAN,
-                      .predicted_force = (double)NAN};
+        sample row = {.time = 0.1 * i, .force = 2.5, .film = film};
         double angles[] = {0.1, 0.2, 0.3};
         assert_int_equal(trace_add_row(&t, &row, angles, angles), STATUS_OK);
     }
-    WRITTEN(text, export_csv(stream, &t, links));
+    WRITTEN(text, export_csv(stream, &s, &t));
     return text;
 }
 
@@ -156,10 +145,11 @@ static int count_of(const char *text, char wanted)
 TEST(csv_has_one_header_and_a_column_for_each_value)
 {
     for (int links = 2; links <= 3; links++) {
-        KEPT_TEXT(text) = csv_of(links, (double)NAN);
+        KEPT_TEXT(text) =
+            csv_of(links == 2 ? "arm: {links: 2}\n" : "arm: {links: 3}\n", (double)NAN);
         int columns = (links > 2 ? 3 : 0);
         for (int i = 0; i < signal_count; i++) {
-            columns += !signal_table[i].optional; // the run has no such sensor
+            columns += signal_table[i].needs == 0; // the run has nothing more
         }
         assert_int_equal(strncmp(text, "time[s],hub_angle[rad],", 23), 0);
         assert_int_equal(strstr(text, ",angle_3[rad]\n") != NULL, links > 2);
@@ -174,7 +164,8 @@ TEST(csv_has_one_header_and_a_column_for_each_value)
 
 TEST(csv_has_columns_of_fitted_sensors_only)
 {
-    KEPT_TEXT(without) = csv_of(2, (double)NAN), *with = csv_of(2, -0.125);
+    KEPT_TEXT(without) = csv_of("arm: {links: 2}\n", -0.125),
+    *with = csv_of("sensor: {film: true}\n", -0.125);
     assert_null(strstr(without, "film[rad]"));
     assert_non_null(strstr(with, ",film[rad],"));
     assert_non_null(strstr(with, ",-0.125,"));

@@ -46,7 +46,7 @@ static status show(const scenario *s, run_result *result, FILE *out)
     json_t *object = export_run(s, result);
     json_write(out, object);
     json_decref(object);
-    export_csv(out, &result->trace, s->parameters.arm.links);
+    export_csv(out, s, &result->trace);
     return STATUS_OK;
 }
 

@@ -9,7 +9,8 @@ static const char *const recorded_csv = "recorded.csv";
 static summary record(const char *const *settings)
 {
     KEPT_RUN(r) = rig_run(settings, true);
-    SCOPED(free_kept) WRITTEN(text, export_csv(stream, &r.trace, 2));
+    const scenario s = {.parameters = rig_parameters(settings)};
+    SCOPED(free_kept) WRITTEN(text, export_csv(stream, &s, &r.trace));
     put_file(recorded_csv, text);
     return r.summary;
 }

@@ -285,7 +285,7 @@ static void write_json(FILE *stream, const void *what)
 static void write_csv(FILE *stream, const void *what)
 {
     const impactlab_run *run = what;
-    export_csv(stream, &run->result.trace, run->scenario.parameters.arm.links);
+    export_csv(stream, &run->scenario, &run->result.trace);
 }
 
 int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *error)

@@ -1,11 +1,10 @@
 #include "src/run/export.h"
 
-#include <assert.h>
 #include <math.h>
 
-#include "src/base/csv.h"
 #include "src/base/json.h"
 #include "src/base/shipped.h"
+#include "src/base/text_stream.h"
 #include "src/scenario/effect.h"
 #include "src/tables/settings.h"
 
@@ -173,46 +172,40 @@ json_t *export_predictions(const scenario *s, const run_result *result, const sa
                    predictions, simulation);
 }
 
-// Fills in the indices of the signals that have a column: all but optional ones without a
-// value in the run. Returns how many there are.
-static int csv_signals(const trace *t, int *columns)
-{
-    int count = 0;
-    for (int i = 0; i < signal_count; i++) {
-        if (!signal_table[i].optional || trace_has(t, i)) {
-            columns[count++] = i;
-        }
-    }
-    return count;
-}
+// --- CSV -------------------------------------------------------------------------------
 
-void export_csv(FILE *stream, const trace *t, int links)
+csv_writer export_csv_begin(FILE *stream, const run_columns *columns)
 {
-    assert(links > 0);
-    int columns[SIGNALS_AT_MOST], count = csv_signals(t, columns);
-    size_t angles = links > 2 ? (size_t)t->angle_count : 0;
     csv_writer csv = csv_begin(stream);
-
-    // headings: the signals, then the angle of every link of an arm with more than two,
-    // of which the signals show the first and the last only
-    for (int i = 0; i < count; i++) {
-        csv_heading(&csv, signal_table[columns[i]].name, signal_table[columns[i]].unit);
-    }
-    for (size_t i = 0; i < angles; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "angle_%zu", i + 1);
-        csv_heading(&csv, name, "rad");
+    for (int i = 0; i < columns->count; i++) {
+        csv_heading(&csv, columns->all[i].name, columns->all[i].unit);
     }
     csv_end_row(&csv);
+    return csv;
+}
 
-    // a row each; writing ends with the first error, which the stream keeps
-    for (size_t row = 0; row < t->row_count && !ferror(stream); row++) {
-        for (int i = 0; i < count; i++) {
-            csv_number(&csv, signal_value(&t->rows[row], columns[i]));
-        }
-        for (size_t i = 0; i < angles; i++) {
-            csv_number(&csv, t->angles[row * (size_t)t->angle_count + i]);
-        }
-        csv_end_row(&csv);
+void export_csv_row(csv_writer *csv, const run_columns *columns, const sample *row,
+                    const double *angles)
+{
+    for (int i = 0; i < columns->count; i++) {
+        csv_number(csv, run_column_value(&columns->all[i], row, angles));
+    }
+    csv_end_row(csv);
+}
+
+void export_csv(FILE *stream, const scenario *s, const trace *t)
+{
+    SCOPED(run_columns_finish) run_columns columns;
+    const status code = run_columns_init(&columns, s, NULL, NULL);
+    loss_unless(code == STATUS_OK);
+    if (code != STATUS_OK) {
+        return;
+    }
+
+    // writing ends with the first error, which the stream keeps
+    csv_writer csv = export_csv_begin(stream, &columns);
+    for (size_t r = 0; r < t->row_count && !ferror(stream); r++) {
+        export_csv_row(&csv, &columns, &t->rows[r],
+                       t->angles + r * (size_t)t->angle_count);
     }
 }

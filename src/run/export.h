@@ -4,7 +4,9 @@
 #include <jansson.h>
 #include <stdio.h>
 
+#include "src/base/csv.h"
 #include "src/run/run.h"
+#include "src/run/run_columns.h"
 
 // The object of `run --json`: scenario, version, status, message, parameters, those
 // without effect, the summary, expectations (if the scenario has any) and events.
@@ -25,7 +27,13 @@ json_t *export_without_effect(const scenario *s);
 json_t *export_predictions(const scenario *s, const run_result *result, const sample *row,
                            const prediction_answer answers[PREDICTOR_COUNT]);
 
-// Writes a trace as CSV: one header row of name[unit], then a row for each sample; for
-// more than two links the angle of every body follows as angle_1[rad], angle_2[rad]...
-// Errors stay in the stream.
-void export_csv(FILE *stream, const trace *t, int links);
+// Begins the CSV of a run: its one header row of name[unit].
+csv_writer export_csv_begin(FILE *stream, const run_columns *columns);
+
+// Writes a row of a run, with the angles of all links [rad].
+void export_csv_row(csv_writer *csv, const run_columns *columns, const sample *row,
+                    const double *angles);
+
+// Writes the trace of a run of the scenario as CSV, with all columns that it has. Errors
+// stay in the stream.
+void export_csv(FILE *stream, const scenario *s, const trace *t);

@@ -51,6 +51,7 @@ enum {
     FEATURE_FORCE_READ,  // the law reads the commanded force
     FEATURE_FORCE_STEPS, // the script changes it
     FEATURE_FORCE_WAVES, // control.force_amplitude
+    FEATURE_FORCE_LIMIT, // control.force_limit
     FEATURE_PIEZO,       // sensors that need not be there
     FEATURE_FILM,
     FEATURE_ACCELEROMETER,

@@ -74,7 +74,8 @@ static feature_set rig_features(const parameters *p)
            when(c->law == LAW_PLUGIN, HAS(PLUGIN)) |
            when(c->law == LAW_PROCESS, HAS(PROCESS)) |
            when(c->law == LAW_PLAYBACK, HAS(PLAYBACK)) |
-           when(c->force_amplitude > 0, HAS(FORCE_WAVES)) | when(s->piezo, HAS(PIEZO)) |
+           when(c->force_amplitude > 0, HAS(FORCE_WAVES)) |
+           when(c->force_limit > 0, HAS(FORCE_LIMIT)) | when(s->piezo, HAS(PIEZO)) |
            when(s->film, HAS(FILM)) | when(s->accelerometer, HAS(ACCELEROMETER)) |
            when(!s->ideal, HAS(IMPERFECT)) | when(s->tachometer_ripple > 0, HAS(RIPPLE)) |
            when(c->jitter > 0 || (noise && !s->ideal), HAS(CHANCE));

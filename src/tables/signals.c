@@ -143,8 +143,7 @@ int signal_derive(int place, const char *text, fault *f)
                       .unit = unit_of(&e),
                       .description = "an expression of yours",
                       .quantity = derived[place].name,
-                      .colour = place % 8,
-                      .optional = true};
+                      .colour = place % 8};
     return SIGNALS_AT_MOST + place;
 }
 

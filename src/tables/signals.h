@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "src/base/fault.h"
+#include "src/tables/feature_bits.h"
 
 typedef enum line_style {
     LINE_SOLID,
@@ -98,14 +99,14 @@ typedef enum signal_body {
            "contact force as the FSR reads it", "Contact force", 5, LINE_SOLID)          \
     SIGNAL(piezo_force, "f<sub>piezo</sub>", "fpz", "N",                                 \
            "contact force as the piezoelectric sensor reads it", "Contact force", 2,     \
-           LINE_SOLID, .optional = true)                                                 \
+           LINE_SOLID, .needs = HAS(PIEZO))                                              \
     SIGNAL(film, "δ<sub>film</sub>", "film", "rad",                                      \
            "bending of the beam, last link's angle minus the first's, as the piezo "     \
            "film reads it",                                                              \
-           "Bending", 4, LINE_SOLID, .optional = true)                                   \
+           "Bending", 4, LINE_SOLID, .needs = HAS(FILM))                                 \
     SIGNAL(accelerometer, "θ̈<sub>acc</sub>", "acc", "rad/s2",                            \
            "hub acceleration as the accelerometer reads it", "Hub acceleration", 0,      \
-           LINE_SOLID, .optional = true)                                                 \
+           LINE_SOLID, .needs = HAS(ACCELEROMETER))                                      \
     SIGNAL(command, "u", "u", "V", "command of the controller", "Command", 6,            \
            LINE_SOLID)                                                                   \
     SIGNAL(controller_mode, "mode", "mode", "",                                          \
@@ -119,23 +120,23 @@ typedef enum signal_body {
            LINE_DASHED)                                                                  \
     SIGNAL(wall_energy, "V<sub>w</sub>", "Vw", "J",                                      \
            "energy that a wall that gives holds", "Strain energy", 5, LINE_DASHED,       \
-           .optional = true)                                                             \
+           .needs = HAS(GIVES))                                                          \
     SIGNAL(wall_loss, "D<sub>w</sub>", "Dw", "J", "lost in a wall that gives",           \
-           "Energy lost", 5, LINE_DASH_DOT, .optional = true)                            \
+           "Energy lost", 5, LINE_DASH_DOT, .needs = HAS(GIVES))                         \
     SIGNAL(wall_place, "s<sub>w</sub>", "sw", "m",                                       \
            "where a wall that moves is, along its normal towards the arm",               \
-           "Place of the wall", 3, LINE_SOLID, .optional = true)                         \
+           "Place of the wall", 3, LINE_SOLID, .needs = HAS(MOVES))                      \
     SIGNAL(wall_work, "W<sub>w</sub>", "Ww", "J", "work done by a wall that moves",      \
-           "Work", 5, LINE_DOTTED, .optional = true)                                     \
+           "Work", 5, LINE_DOTTED, .needs = HAS(MOVES))                                  \
     SIGNAL(weight_energy, "V<sub>g</sub>", "Vg", "J",                                    \
            "potential energy of the weight in a tilted plane, from the hub's axis on",   \
-           "Strain energy", 6, LINE_DASHED, .optional = true)                            \
+           "Strain energy", 6, LINE_DASHED, .needs = HAS(TILTED))                        \
     SIGNAL(face_depth, "x<sub>w</sub>", "xw", "m",                                       \
            "how far the face of a wall that gives is pushed in",                         \
-           "Depth of the wall's face", 2, LINE_DASHED, .optional = true)                 \
+           "Depth of the wall's face", 2, LINE_DASHED, .needs = HAS(GIVES))              \
     SIGNAL(predicted_force, "f<sub>pred</sub>", "fpred", "N",                            \
            "largest contact force if the tip struck now, as the rig predicts it",        \
-           "Contact force", 4, LINE_DOTTED, .optional = true)
+           "Contact force", 4, LINE_DOTTED, .needs = HAS(FORCE_LIMIT))
 
 // One recorded row: the state at an instant and the quantities that belong to exactly
 // that state.
@@ -155,10 +156,10 @@ typedef struct signal_info {
         *quantity; // label of its axis, the same for every body: "Angular velocity"
     int colour;    // slot in the palette, 0-7
     line_style style;
-    signal_body body; // BODY_NONE where the description says all
-    bool optional;    // of a sensor that need not be there: no column where nothing is
-                      // recorded
-    size_t offset;    // in struct sample
+    signal_body body;  // BODY_NONE where the description says all
+    feature_set needs; // what a run must have for it to have a value, one of these; 0:
+                       // nothing, it has a column in every table
+    size_t offset;     // in struct sample
 } signal_info;
 
 // The recorded ones, and behind them those that are derived from them.

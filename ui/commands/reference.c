@@ -156,7 +156,7 @@ static void write_signals_chapter(FILE *stream)
         g_autofree char *symbol = markdown_text(signal->ascii);
         g_autofree char *description = markdown_text(signal->description);
         fprintf(stream, "| `%s` | %s | %s | %s%s |\n", signal->name, symbol, signal->unit,
-                description, remark_if(signal->optional, "; only if recorded"));
+                description, remark_if(signal->needs != 0, "; only if recorded"));
     }
 }
 

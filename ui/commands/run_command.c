@@ -213,7 +213,7 @@ static json_t *run_json(const void *found)
 static void write_signals_csv(FILE *stream, const void *found)
 {
     const finished_run *run = found;
-    export_csv(stream, &run->result.trace, run->scenario->parameters.arm.links);
+    export_csv(stream, run->scenario, &run->result.trace);
 }
 
 static int plot_signals(const arguments *a, const void *found)

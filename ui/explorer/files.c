@@ -315,7 +315,7 @@ static bool save_over(explorer_model *model, explorer_view *view, explorer_input
     }
     const session *s = &model->session;
     if (content == FILE_ROWS) {
-        export_csv(file.stream, &s->run.trace, s->effective.parameters.arm.links);
+        export_csv(file.stream, &s->effective, &s->run.trace);
     } else if (content == FILE_SCENARIO) {
         scenario_write(file.stream, &s->effective);
     } else {

@@ -236,7 +236,7 @@ static void write_scenario(FILE *stream)
 
 static void write_rows(FILE *stream)
 {
-    export_csv(stream, &result.trace, changed.parameters.arm.links);
+    export_csv(stream, &changed, &result.trace);
 }
 
 static const char *answer_text(void (*write)(FILE *stream), bool there)

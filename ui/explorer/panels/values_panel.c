@@ -16,7 +16,7 @@ enum { NAME = 19, NUMBER = 10, UNIT = 6 }; // widths of columns [cells]
 static bool is_listed(const explorer_view *view, const sample *row, int signal)
 {
     const signal_info *info = &signal_table[signal];
-    if (info->optional && isnan(signal_value(row, signal))) {
+    if (info->needs != 0 && isnan(signal_value(row, signal))) {
         return false;
     }
     return filter_passes(view->filters.text[PANEL_VALUES], info->name);
