@@ -161,9 +161,9 @@ interrupted solve endless.yaml motor.voltage=0.001:0.002 'peak_force_N<2'
 says err "0 of 65 runs"
 
 # the rows of a run, its numbers, and pictures of it
-interrupted run endless.yaml --csv trace.csv --json run.json --plot run.svg --scene scene.png
+interrupted run endless.yaml --csv trace.csv --mat trace.mat --json run.json --plot run.svg --scene scene.png
 says err "of 90000 s were computed"
-[ "$(wc -l <trace.csv)" -gt 10 ] && [ -s run.svg ] && [ -s scene.png ] ||
+[ "$(wc -l <trace.csv)" -gt 10 ] && [ -s trace.mat ] && [ -s run.svg ] && [ -s scene.png ] ||
     fail "what a run that was stopped came to is not kept"
 part run.json
 
@@ -253,7 +253,7 @@ for early in "run endless.yaml --csv early.csv" "predict endless.yaml --json ear
 done
 
 # late: what is being written becomes whole, and so do the others
-each_late "json csv plot scene" run brief.yaml
+each_late "json csv parquet mat plot scene" run brief.yaml
 each_late "json plot" predict brief.yaml
 each_late "json plot" modes brief.yaml
 each_late "csv json plot" sweep brief.yaml --vary motor.voltage=1:2:4

@@ -266,6 +266,31 @@ int stream_failure(FILE *stream)
     return errno;
 }
 
+status whole_file_scratch(const whole_file *w, int *descriptor, fault *f)
+{
+    // beside what will be the file, or where the system has room for large files
+    char folder[PATH_MAX], path[PATH_MAX];
+    const char *where = getenv("TMPDIR");
+    if (w->temporary[0] != '\0') {
+        where = folder_of(w->path, folder);
+    } else if (where == NULL || where[0] == '\0') {
+        where = "/var/tmp";
+    }
+
+    // its name goes at once
+    const int length = snprintf(path, PATH_MAX, "%s/.impactlab-XXXXXX.part", where);
+    *descriptor = -1;
+    errno = ENAMETOOLONG;
+    if (length < PATH_MAX) {
+        *descriptor = mkostemps(path, (int)strlen(".part"), O_CLOEXEC);
+    }
+    if (*descriptor < 0) {
+        return cannot_write(f, where, errno);
+    }
+    unlink(path);
+    return STATUS_OK;
+}
+
 // Flushes the stream and, of a file that is not the standard output, closes it. 0, or the
 // reason why not all that was written arrived.
 static int end_stream(whole_file *w)

@@ -38,6 +38,13 @@ bool whole_file_same_place(const char *path, const char *other);
 status whole_file_open(whole_file *w, const char *path, fault *f)
     __attribute__((warn_unused_result));
 
+// Opens a file without a name for what is to be written later and does not fit into
+// memory: on the disk of w, or in TMPDIR (/var/tmp) where that is a device or the
+// standard output. It is read and written, and gone once it is closed.
+// STATUS_CANNOT_WRITE.
+status whole_file_scratch(const whole_file *w, int *descriptor, fault *f)
+    __attribute__((warn_unused_result));
+
 // If writing succeeded (`written` is STATUS_OK), checks everything written so far, brings
 // it to the disk and puts the file in its place. If anything failed, or was lost for want
 // of memory (text_stream.h), the target is as it was before and f says why. A reader of

@@ -26,13 +26,19 @@ static bool has_signal(feature_set features, int signal)
     return needs == 0 || (needs & features) != 0;
 }
 
-// How many columns of angles there are: one for each body of a longer arm.
-static int angle_columns(const arm_parameters *arm)
+int run_angle_count(const scenario *s)
 {
-    if (arm->links <= 2) {
+    const arm_parameters *a = &s->parameters.arm;
+    return a->links + (a->hub_joint != HUB_RIGID || a->model == ARM_PRINTED);
+}
+
+// How many columns of angles there are: one for each body of a longer arm.
+static int angle_columns(const scenario *s)
+{
+    if (s->parameters.arm.links <= 2) {
         return 0;
     }
-    return arm->links + (arm->hub_joint != HUB_RIGID);
+    return run_angle_count(s);
 }
 
 // Fills in all columns of the scenario; there is room for them.
@@ -131,7 +137,7 @@ static status choose(run_columns *c, const char *text, fault *f)
 status run_columns_init(run_columns *c, const scenario *s, const char *chosen, fault *f)
 {
     // room for all
-    const int angles = angle_columns(&s->parameters.arm);
+    const int angles = angle_columns(s);
     *c = (run_columns){.count = 0};
     c->all = calloc((size_t)signal_count + (size_t)angles, sizeof *c->all);
     c->names = calloc((size_t)angles + 1, ANGLE_NAME);

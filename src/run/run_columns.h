@@ -31,6 +31,9 @@ status run_columns_init(run_columns *c, const scenario *s, const char *chosen, f
 
 void run_columns_finish(run_columns *c);
 
+// How many link angles a row of a run of the scenario has.
+int run_angle_count(const scenario *s);
+
 // The number of a row, with the angles of all links [rad], in a column; NaN: it has none.
 static inline double run_column_value(const run_column *c, const sample *row,
                                       const double *angles)

@@ -98,7 +98,8 @@ static int open_all_filmed(filmed_runs *m, const arguments *a)
 static int run_filmed(const arguments *a, filmed_runs *m, int i)
 {
     run_result *result = &m->results[i];
-    const status code = run_with_progress(a, &m->scenarios[i], true, result);
+    const status code =
+        run_with_progress(a, &m->scenarios[i], (run_options){.keep_trace = true}, result);
     m->run++;
     if (code == STATUS_OK) {
         return EXIT_DONE;

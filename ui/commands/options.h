@@ -135,7 +135,8 @@ typedef struct arguments {
     const char *part;                 // --part, "K/N"
     const char *quantity;             // --quantity, a key
     const char *only, *baseline;      // of bench
-    const char *against, *columns;    // of compare
+    const char *against;              // of compare
+    const char *columns;              // of a table, "A,B"
     double tolerance;                 // of compare [%]
     const char *laws, *over;          // of robust
     uint64_t draw;                    // --draw, cases; 0 if not given
@@ -147,8 +148,8 @@ typedef struct arguments {
     bool looped, injects;             // of linear, --law and --inject
 
     // files for results
-    const char *json, *csv, *mat, *plot, *nyquist, *scene, *output, *db, *markdown,
-        *format;
+    const char *json, *csv, *parquet, *mat, *plot, *nyquist, *scene, *output, *db,
+        *markdown, *format;
 
     // appearance of pictures
     bool mono, dark, bare, transparent;
@@ -160,6 +161,7 @@ typedef struct arguments {
     double dpi;           // of a PNG; 0 if not given
     const char *overlay;  // CSV
     option_list instants; // --at [s]
+    double every;         // of tables [s]; 0 if not given
     const char *gl, *camera;
     double exaggerate;
     uint64_t ghosts;

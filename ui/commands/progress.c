@@ -140,11 +140,10 @@ int work_finish(const arguments *a, status code, const fault *f, const command_r
     }
 }
 
-status run_with_progress(const arguments *a, const scenario *s, bool keep_trace,
+status run_with_progress(const arguments *a, const scenario *s, run_options options,
                          run_result *result)
 {
-    const run_options options = {.keep_trace = keep_trace,
-                                 .monitor = &interrupts_monitor};
+    options.monitor = &interrupts_monitor;
     work.pieces = NULL;
     work.duration = s->parameters.run.duration;
     begin_work(a);

@@ -26,9 +26,9 @@ void work_end(void);
 int work_finish(const arguments *a, status code, const fault *f, const command_results *r,
                 const void *found);
 
-// As run_scenario_with, with progress shown. An interrupt ends the run: STATUS_STOPPED,
-// with what was computed until then.
-status run_with_progress(const arguments *a, const scenario *s, bool keep_trace,
+// As run_scenario_with, with progress shown; the options have no monitor yet. An
+// interrupt ends the run: STATUS_STOPPED, with what was computed until then.
+status run_with_progress(const arguments *a, const scenario *s, run_options options,
                          run_result *result);
 
 // Says how far a run came that was stopped, and what became of it. Returns the exit

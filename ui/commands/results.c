@@ -1,6 +1,7 @@
 #include "ui/commands/results.h"
 
 #include <string.h>
+#include <unistd.h>
 
 #include "render/page/picture_file.h"
 #include "src/base/json.h"
@@ -54,6 +55,16 @@ int check_results(const arguments *a)
         }
     }
     return result;
+}
+
+int refuse_bytes_on_screen(const char *name, const char *path)
+{
+    if (path != NULL && strcmp(path, "-") == 0 && isatty(STDOUT_FILENO)) {
+        return complain("--%s -: the standard output is a terminal, which cannot show "
+                        "it, expected a file or a pipe",
+                        name);
+    }
+    return EXIT_DONE;
 }
 
 int write_file(const char *path, result_writer *write, const void *found)

@@ -19,6 +19,10 @@ bool summary_wanted(const arguments *a);
 // Returns the exit status.
 int check_results(const arguments *a);
 
+// Refuses to write bytes that are no text, the result of the option --NAME, to a standard
+// output that is a terminal; path may be NULL. Returns the exit status.
+int refuse_bytes_on_screen(const char *name, const char *path);
+
 // Writes the JSON value to path ("-": standard output) whole or not at all. Takes over
 // value, which may be NULL (no memory). Returns the exit status.
 int write_json_file(const char *path, json_t *value) __attribute__((warn_unused_result));

@@ -6,6 +6,7 @@
 
 #include "src/arm/arm.h"
 #include "src/base/words.h"
+#include "src/exchange/run_tables.h"
 #include "src/run/export.h"
 #include "src/scenario/effect.h"
 #include "src/tables/parameters.h"
@@ -210,12 +211,6 @@ static json_t *run_json(const void *found)
     return export_run(run->scenario, &run->result);
 }
 
-static void write_signals_csv(FILE *stream, const void *found)
-{
-    const finished_run *run = found;
-    export_csv(stream, run->scenario, &run->result.trace);
-}
-
 static int plot_signals(const arguments *a, const void *found)
 {
     const finished_run *run = found;
@@ -231,7 +226,6 @@ static int write_run_results(const arguments *a, const finished_run *run, bool w
     static const command_results results = {.json = run_json,
                                             .text = print_run,
                                             .plot = plot_signals,
-                                            .csv = write_signals_csv,
                                             .draws_part = true};
     int result = EXIT_DONE;
     if (a->scene != NULL) {
@@ -296,6 +290,25 @@ static void print_notes(const scenario *s)
     }
 }
 
+// Opens the tables that are asked for. Returns the exit status.
+static int open_tables(const arguments *a, const scenario *s, run_tables **tables)
+{
+    const run_tables_order order = {.csv = a->csv,
+                                    .parquet = a->parquet,
+                                    .mat = a->mat,
+                                    .columns = a->columns,
+                                    .every = a->every};
+    fault f = {0};
+    switch (run_tables_open(tables, s, &order, &f)) {
+    case STATUS_OK:
+        return EXIT_DONE;
+    case STATUS_BAD_ARGUMENT:
+        return complain("--columns %s: %s", a->columns, f.text);
+    default:
+        return complain_fault(&f);
+    }
+}
+
 // Runs a scenario, writes its results and says what is to be said of it. Returns the exit
 // status.
 static int run_and_report(const arguments *a, scenario *s)
@@ -305,12 +318,22 @@ static int run_and_report(const arguments *a, scenario *s)
         s->expectation_count = 0;
     }
 
+    // the tables, whose rows are written while they come
+    run_tables *tables;
+    int result = open_tables(a, s, &tables);
+    if (result != EXIT_DONE) {
+        return result;
+    }
     finished_run run = {.scenario = s};
-    const bool keep_trace = a->csv != NULL || a->plot != NULL || a->scene != NULL;
-    const status code = run_with_progress(a, s, keep_trace, &run.result);
+    run_options options = {.keep_trace = a->plot != NULL || a->scene != NULL};
+    run_tables_observe(tables, &options);
+    const status code = run_with_progress(a, s, options, &run.result);
 
     // results are written of a run that failed, too
-    int result = write_run_results(a, &run, code != STATUS_STOPPED);
+    if (run_tables_close(tables, complain_sentence, NULL) != STATUS_OK) {
+        result = EXIT_FAILED;
+    }
+    result = worse(result, write_run_results(a, &run, code != STATUS_STOPPED));
     result = worse(result, report_ending(&run, code));
     print_notes(s);
     if (code == STATUS_OK &&
@@ -322,11 +345,32 @@ static int run_and_report(const arguments *a, scenario *s)
     return result;
 }
 
+// Refuses what is asked of tables where there are none, and bytes on a screen. Returns
+// the exit status.
+static int check_tables(const arguments *a)
+{
+    const bool any = a->csv != NULL || a->parquet != NULL || a->mat != NULL;
+    if (a->every > 0 && !any) {
+        return complain("--every is for --csv, --parquet and --mat, and none of them is "
+                        "asked for");
+    }
+    if (a->columns != NULL && !any) {
+        return complain("--columns is for --csv, --parquet and --mat, and none of them "
+                        "is asked for");
+    }
+    const int ended = refuse_bytes_on_screen("parquet", a->parquet);
+    return worse(ended, refuse_bytes_on_screen("mat", a->mat));
+}
+
 // Checks what is asked for, before anything is simulated, and runs the scenario.
 static int check_and_run(const arguments *a)
 {
     figure_options pictures;
-    int ended = check_scene(a);
+    int ended = check_tables(a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    ended = check_scene(a);
     if (ended != EXIT_DONE) {
         return ended;
     }
@@ -340,6 +384,15 @@ static int check_and_run(const arguments *a)
 static const option_row rows[] = {
     OPTION(RESULT, "csv", "FILE|-", "write the recorded signals, one row a step",
            PLACE(csv)),
+    OPTION(RESULT, "parquet", "FILE.parquet",
+           "write them for pandas, polars, DuckDB or Spark", PLACE(parquet)),
+    OPTION(RESULT, "mat", "FILE.mat", "write them for MATLAB, Octave or scipy",
+           PLACE(mat)),
+    OPTION(NUMBER, "every", "DT",
+           "one row every DT [s] in these tables, in the place of all that are recorded",
+           PLACE(every), .low = 1e-9, .high = 1e5, .unit = "s"),
+    OPTION(TEXT, "columns", "A,B", "only these signals in these tables, in this order",
+           PLACE(columns)),
     OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", "draw the recorded signals",
            PLACE(plot)),
     OPTION(PLACE, "scene", "FILE.png", "draw the arm", PLACE(scene)),

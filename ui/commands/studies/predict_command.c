@@ -265,7 +265,7 @@ static int run_and_predict(const arguments *a, scenario *s)
     run_result simulated;
     int result;
 
-    switch (run_with_progress(a, s, true, &simulated)) {
+    switch (run_with_progress(a, s, (run_options){.keep_trace = true}, &simulated)) {
     case STATUS_OK:
         result = predict_and_report(a, s, &simulated);
         break;
