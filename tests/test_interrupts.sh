@@ -253,7 +253,17 @@ for early in "run endless.yaml --csv early.csv" "predict endless.yaml --json ear
 done
 
 # late: what is being written becomes whole, and so do the others
-each_late "json csv parquet mat plot scene" run brief.yaml
+each_late "json plot scene" run brief.yaml --csv rows.csv --parquet rows.parquet --mat rows.mat
+[ -s rows.csv ] && [ -s rows.parquet ] && [ -s rows.mat ] || fail "the rows of a run are lost"
+
+# the rows of a run are written while it goes on: one that waits for its pipe has not begun
+for kind in csv parquet mat; do
+    rm -f late.fifo
+    mkfifo late.fifo
+    interrupted_once blocked run brief.yaml --$kind late.fifo --json run.json
+    says err "of 0.4 s were computed"
+    [ -s got ] || fail "run --$kind: what there is of the rows is lost"
+done
 each_late "json plot" predict brief.yaml
 each_late "json plot" modes brief.yaml
 each_late "csv json plot" sweep brief.yaml --vary motor.voltage=1:2:4

@@ -1,8 +1,9 @@
 #!/bin/bash
-# Tables for other programs: run --parquet and --mat beside --csv, --every, --columns.
+# Tables for other programs: run --parquet and --mat beside --csv, --every, --columns; sweep --parquet.
 # $1: the program, $2: the project's folder
 set -u
-readers=$(readlink -f "$2")/tests/tables/readers.py
+root=$(readlink -f "$2")
+readers=$root/tests/tables/readers.py
 python=$(command -v /usr/bin/python3 || command -v python3) # scipy is a package of the system's
 . "$(dirname "$0")/expect.sh"
 
@@ -118,6 +119,35 @@ alike a.csv a.parquet a.mat
 printf 'title: T\narm: {model: printed}\nscript:\n  - {at: 0.1 s, push: 0.1 N s}\n' >refused.yaml
 expect 2 run refused.yaml --csv a.csv --parquet a.parquet --mat a.mat --quiet
 alike a.csv a.parquet a.mat
+
+# a sweep: words, whole numbers, failures, quantities that did not occur, values without effect; and its
+# parts in one folder, from memory or from a database, are the same table
+for vary in "--vary method.name=event,newmark --vary motor.voltage=0,1,2 --vary arm.links=2,3" \
+    "--vary wall.contact=rigid,kelvin-voigt --vary wall.stiffness=1e4,2e4" \
+    "--set method.name=newmark --set method.step=0.02 --vary motor.voltage=1:10:5"; do
+    rm -rf parts part.sqlite
+    mkdir parts
+    expect 0 sweep corrected/first-impact $vary --csv rows.csv --json rows.json --parquet rows.parquet --quiet
+    alike --rows rows.csv rows.parquet
+    for part in 1 2 3; do
+        db=
+        [ $part != 2 ] || db="--db part.sqlite"
+        expect 0 sweep corrected/first-impact $vary --part $part/3 --parquet parts/$part.parquet $db
+        says out "part $part of 3"
+    done
+    alike --rows rows.csv parts/*.parquet
+done
+expect 2 sweep corrected/first-impact --vary motor.voltage=1,2 --part 1/2
+says err "expected --db FILE.sqlite or --parquet FILE.parquet"
+expect 2 sweep corrected/first-impact --vary motor.voltage=1,2 --part 1/2 --parquet parts/1.parquet --csv x.csv
+says err "is not the whole sweep"
+expect 0 sweep corrected/first-impact --vary motor.voltage=1,2 --part 1/2 --parquet -
+[ "$(head -c 4 out)$(tail -c 4 out)" = PAR1PAR1 ] || fail "a part on the standard output is no Parquet file"
+expect 1 sweep corrected/first-impact --vary motor.voltage=1,2 --parquet /dev/full --quiet
+says err "No space left on device"
+cp "$root/scenarios/corrected/first-impact.yaml" mine.yaml
+expect 2 sweep mine.yaml --vary motor.voltage=1,2 --parquet mine.yaml
+cmp -s mine.yaml "$root/scenarios/corrected/first-impact.yaml" || fail "a sweep replaces its scenario"
 
 # memory does not grow with rows: half a million take no more than a thousand, by some megabytes of buffers
 most() {

@@ -8,7 +8,7 @@
 #include "src/base/whole_file.h"
 #include "src/exchange/mat_file.h"
 #include "src/exchange/mat_rows.h"
-#include "src/exchange/parquet_file.h"
+#include "src/exchange/scenario_notes.h"
 #include "src/run/export.h"
 #include "src/run/row_grid.h"
 
@@ -207,35 +207,15 @@ status run_tables_open(run_tables **opened, const scenario *s,
 
 // --- the end ---------------------------------------------------------------------------
 
-// The scenario as a file, to be freed. NULL, noted, without memory.
-static char *scenario_text(const scenario *s)
-{
-    text_stream text;
-    if (!text_stream_open(&text)) {
-        loss_unless(false);
-        return NULL;
-    }
-    scenario_write(text.stream, s);
-    char *written = text_stream_close(&text, NULL);
-    loss_unless(written != NULL);
-    return written;
-}
-
-static void end_parquet(run_tables *t, const char *yaml)
-{
-    const parquet_note notes[] = {{"impactlab.version", lab_version()},
-                                  {"impactlab.scenario", yaml}};
-    parquet_end(t->tables[TABLE_PARQUET].as.parquet, notes, 2);
-}
-
 // The columns, their units, and what they are of.
-static status end_mat(run_tables *t, const char *yaml, fault *f)
+static status end_mat(run_tables *t, fault *f)
 {
     const int count = t->columns.count;
+    SCOPED(free_kept) char *yaml = scenario_note(t->scenario);
     run_table *to = &t->tables[TABLE_MAT];
     SCOPED(free_kept) const char **names = calloc((size_t)count, sizeof *names);
     SCOPED(free_kept) const char **units = calloc((size_t)count, sizeof *units);
-    if (names == NULL || units == NULL) {
+    if (names == NULL || units == NULL || yaml == NULL) {
         return fault_no_memory(f);
     }
     for (int i = 0; i < count; i++) {
@@ -260,14 +240,10 @@ static status end_table(run_tables *t, table_format format, fault *f)
         return STATUS_OK;
     }
 
-    if (format != TABLE_CSV) {
-        SCOPED(free_kept) char *yaml = scenario_text(t->scenario);
-        const char *text = yaml != NULL ? yaml : "";
-        if (format == TABLE_PARQUET) {
-            end_parquet(t, text);
-        } else {
-            written = end_mat(t, text, f);
-        }
+    if (format == TABLE_PARQUET) {
+        parquet_end_with_scenario(of->as.parquet, t->scenario);
+    } else if (format == TABLE_MAT) {
+        written = end_mat(t, f);
     }
     return whole_file_close(&of->file, written, f);
 }

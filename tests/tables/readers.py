@@ -215,11 +215,13 @@ def compare_rows(csv_path, paths):
     rows, schemas = {}, []
     for path in paths:
         parquet, notes = read_parquet(path)
+        assert "title:" in notes["impactlab.scenario"]
         schemas.append([(name, notes["unit." + name]) for name in parquet])
         for row in zip(*parquet.values()):
             assert row[0] not in rows, "a run stands twice"
             rows[row[0]] = row
-    assert all(schema == list(units.items()) for schema in schemas)
+    assert all(schema == schemas[0] for schema in schemas)
+    assert [unit for _, unit in schemas[0]] == list(units.values())
     lines = list(zip(*columns.values()))
     assert len(rows) == len(lines) > 0
     for line in lines:

@@ -11,6 +11,7 @@
 #include "src/scenario/effect.h"
 #include "src/tables/parameters.h"
 #include "ui/commands/command_pictures.h"
+#include "ui/commands/interrupts.h"
 #include "ui/commands/progress.h"
 #include "ui/commands/results.h"
 
@@ -318,7 +319,8 @@ static int run_and_report(const arguments *a, scenario *s)
         s->expectation_count = 0;
     }
 
-    // the tables, whose rows are written while they come
+    // the tables, whose rows are written while they come; a pipe may wait for its reader
+    interrupts_catch();
     run_tables *tables;
     int result = open_tables(a, s, &tables);
     if (result != EXIT_DONE) {

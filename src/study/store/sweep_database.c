@@ -105,20 +105,27 @@ status database_recognise(sweep_database *store, bool *empty, fault *f)
 int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS])
 {
     int count = 0;
-    columns[count++] = (run_column){{"run", "run", ""}, "INTEGER PRIMARY KEY"};
+    columns[count++] =
+        (run_column){{"run", "run", "", .kind = RESULT_COUNT}, "INTEGER PRIMARY KEY"};
     for (const sweep_axis *a = s->axes; a < s->axes + s->axis_count; a++) {
         const parameter_info *info = sweep_axis_parameter(a);
         const char *type = "REAL NOT NULL";
+        result_kind kind = RESULT_NUMBER;
         if (sweep_axis_has_words(a)) {
             type = "TEXT NOT NULL";
+            kind = RESULT_TEXT;
         } else if (info->type == PARAMETER_INTEGER) {
             type = "INTEGER NOT NULL";
+            kind = RESULT_COUNT;
         }
-        columns[count++] =
-            (run_column){{a->name, a->name, info->unit}, type, .quote = "\""};
+        columns[count++] = (run_column){{a->name, a->name, info->unit, .kind = kind},
+                                        type,
+                                        .quote = "\""};
     }
-    columns[count++] = (run_column){{"status", "status", ""}, "TEXT NOT NULL"};
-    columns[count++] = (run_column){{"message", "message", ""}, "TEXT NOT NULL"};
+    columns[count++] =
+        (run_column){{"status", "status", "", .kind = RESULT_TEXT}, "TEXT NOT NULL"};
+    columns[count++] =
+        (run_column){{"message", "message", "", .kind = RESULT_TEXT}, "TEXT NOT NULL"};
     for (const summary_info *q = summary_table; q < summary_table + summary_count; q++) {
         columns[count++] =
             (run_column){{q->key, q->name, q->unit}, "REAL", "\"", q->timing};

@@ -124,9 +124,9 @@ status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
     return code;
 }
 
-// --- as files --------------------------------------------------------------------------
+// --- as a table ------------------------------------------------------------------------
 
-// Whether some run has an axis that idles, so that CSV needs a column for it.
+// Whether some run has an axis that idles, so that a table needs a column for it.
 static bool some_idle(const sweep *s)
 {
     for (size_t i = 0; i < s->run_count * (size_t)s->axis_count; i++) {
@@ -138,101 +138,175 @@ static bool some_idle(const sweep *s)
     return false;
 }
 
-// Tells which values of a run have no effect: an object of JSON why, a row of CSV their
-// paths.
-static void write_idle(const sweep *s, size_t run, json_t *object, csv_writer *csv)
+int sweep_store_columns(const sweep *s, result_column columns[SWEEP_COLUMNS])
 {
-    char paths[SWEEP_MOST_AXES * SWEEP_NAME] = "";
-    size_t length = 0;
-    json_t *array = json_array();
-    for (int i = 0; i < s->axis_count; i++) {
-        const char *name = s->axes[i].name, *why = sweep_idle(s, run, i);
-        if (why != NULL) {
-            json_add(array, json_of("path:t why:t", name, why));
-            length += (size_t)snprintf(paths + length, sizeof paths - length, "%s%s",
-                                       length > 0 ? " " : "", name);
-        }
-    }
-
-    if (csv != NULL) {
-        csv_text(csv, paths);
-    } else if (length > 0) {
-        json_put(object, "without_effect", json_incref(array));
-    }
-    json_decref(array);
-}
-
-// The rows are read and written one by one, as there may be millions.
-status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
-{
-    sweep_database *store = database_of(of);
-    sqlite3_stmt *rows;
-    csv_writer csv = csv_begin(stream);
     run_column all[RUN_MOST_COLUMNS];
-    result_column columns[RUN_MOST_COLUMNS];
-    int at[RUN_MOST_COLUMNS], count = 0;
-    const char *separator = "\n    ";
-    TRY(database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f));
-
-    const bool told_idle = !json && some_idle(store->sweep);
-
-    // all columns but those that depend on the machine
-    for (int i = 0, most = database_columns(store->sweep, all); i < most; i++) {
+    int count = 0;
+    for (int i = 0, most = database_columns(s, all); i < most; i++) {
         if (!all[i].timing) {
-            at[count] = i;
             columns[count++] = all[i].told;
         }
     }
-    if (json) {
-        json_t *name = json_text(store->sweep->base->name);
-        fputs("{\n  \"scenario\": ", stream);
-        json_write_member(stream, name, 1);
-        fprintf(stream, ",\n  \"sampling\": \"%s\",\n  \"runs\": [",
-                sweep_sampling_name(store->sweep->sampling));
-        json_decref(name);
-    } else {
-        columns[count] = (result_column){"without_effect", "without_effect", ""};
-        result_headings(&csv, columns, count + (told_idle ? 1 : 0));
+    if (some_idle(s)) {
+        columns[count++] =
+            (result_column){"without_effect", "without_effect", "", .kind = RESULT_TEXT};
     }
-    while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
-        json_t *object = NULL; // which loses whatever is put into it
-        if (json) {
-            object = json_object();
+    return count;
+}
+
+// The paths of a run's values without effect, with blanks between them.
+static void idle_paths(const sweep *s, size_t run,
+                       char paths[SWEEP_MOST_AXES * SWEEP_NAME])
+{
+    size_t length = 0;
+    paths[0] = '\0';
+    for (int i = 0; i < s->axis_count; i++) {
+        if (sweep_idle(s, run, i) != NULL) {
+            length +=
+                (size_t)snprintf(paths + length, SWEEP_MOST_AXES * SWEEP_NAME - length,
+                                 "%s%s", length > 0 ? " " : "", s->axes[i].name);
         }
-        for (int k = 0; k < count; k++) {
-            const int type = sqlite3_column_type(rows, at[k]);
-            result_cell cell = {NULL, (double)NAN};
-            if (type == SQLITE_TEXT) {
-                cell = (result_cell){(const char *)sqlite3_column_text(rows, at[k]), 0};
-            } else if (type != SQLITE_NULL) {
-                cell.number = sqlite3_column_double(rows, at[k]);
+    }
+}
+
+// What the row that a statement stands on has in a column.
+static result_cell cell_at(sqlite3_stmt *row, int column)
+{
+    const int type = sqlite3_column_type(row, column);
+    result_cell cell = {NULL, (double)NAN};
+    if (type == SQLITE_TEXT) {
+        cell = (result_cell){(const char *)sqlite3_column_text(row, column), 0};
+    } else if (type != SQLITE_NULL) {
+        cell.number = sqlite3_column_double(row, column);
+    }
+    return cell;
+}
+
+// The rows are read and handed on one by one, as there may be millions.
+status sweep_store_rows(sweep_store *of, sweep_share share, sweep_row_taker *take,
+                        void *context, fault *f)
+{
+    sweep_database *store = database_of(of);
+    sqlite3_stmt *rows;
+    run_column all[RUN_MOST_COLUMNS];
+    const int most = database_columns(store->sweep, all);
+    bool wanted = true;
+    status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);
+
+    while (wanted && database_next(store, rows, &code, f)) {
+        const size_t run = (size_t)sqlite3_column_int64(rows, 0) - 1;
+        if (share.parts > 0 && run % (size_t)share.parts != (size_t)share.part - 1) {
+            continue;
+        }
+
+        // the row's cells, then what has no effect, for which there may be no column
+        result_cell cells[SWEEP_COLUMNS];
+        char paths[SWEEP_MOST_AXES * SWEEP_NAME];
+        int count = 0;
+        for (int i = 0; i < most; i++) {
+            if (!all[i].timing) {
+                cells[count++] = cell_at(rows, i);
             }
-            if (json) {
-                result_put(object, columns[k].key, cell);
-            } else {
-                result_field(&csv, cell);
-            }
         }
-        if (json || told_idle) {
-            const size_t run = (size_t)sqlite3_column_int64(rows, 0) - 1;
-            write_idle(store->sweep, run, object, json ? NULL : &csv);
-        }
-        if (json) {
-            fputs(separator, stream);
-            json_write_member(stream, object, 2);
-            separator = ",\n    ";
-        } else {
-            csv_end_row(&csv);
-        }
-        json_decref(object);
+        idle_paths(store->sweep, run, paths);
+        cells[count] = (result_cell){paths, 0};
+        wanted = take(context, run, cells);
     }
+
+    // the last row has ended the statement
+    if (!wanted) {
+        sqlite3_finalize(rows);
+    }
+    return code;
+}
+
+// --- as files --------------------------------------------------------------------------
+
+// A file that is being written.
+typedef struct rows_file {
+    FILE *stream;
+    const sweep *sweep;
+    csv_writer csv;
+    result_column columns[SWEEP_COLUMNS];
+    int count;
+    const char *separator; // before the next object of JSON
+} rows_file;
+
+static bool write_csv_row(void *context, size_t run, const result_cell *cells)
+{
+    rows_file *file = context;
+    (void)run; // it is in its cell
+    for (int k = 0; k < file->count; k++) {
+        result_field(&file->csv, cells[k]);
+    }
+    csv_end_row(&file->csv);
+    return !ferror(file->stream);
+}
+
+// The values of a run that have no effect, [{path, why}]; empty where all have one.
+static json_t *idle_values(const sweep *s, size_t run)
+{
+    json_t *array = json_array();
+    for (int i = 0; i < s->axis_count; i++) {
+        const char *why = sweep_idle(s, run, i);
+        if (why != NULL) {
+            json_add(array, json_of("path:t why:t", s->axes[i].name, why));
+        }
+    }
+    return array;
+}
+
+static bool write_json_row(void *context, size_t run, const result_cell *cells)
+{
+    rows_file *file = context;
+    json_t *object = json_object(), *idle = idle_values(file->sweep, run);
+
+    // as the columns, but that JSON says why a value has no effect, too
+    for (int k = 0; k < file->count; k++) {
+        if (strcmp(file->columns[k].key, "without_effect") != 0) {
+            result_put(object, file->columns[k].key, cells[k]);
+        }
+    }
+    if (json_array_size(idle) > 0) {
+        json_put(object, "without_effect", json_incref(idle));
+    }
+
+    fputs(file->separator, file->stream);
+    json_write_member(file->stream, object, 2);
+    file->separator = ",\n    ";
+    json_decref(idle);
+    json_decref(object);
+    return !ferror(file->stream);
+}
+
+// The object with all rows in `runs`.
+static status write_json(sweep_store *of, rows_file *file, fault *f)
+{
+    FILE *stream = file->stream;
+    json_t *name = json_text(file->sweep->base->name);
+    fputs("{\n  \"scenario\": ", stream);
+    json_write_member(stream, name, 1);
+    fprintf(stream, ",\n  \"sampling\": \"%s\",\n  \"runs\": [",
+            sweep_sampling_name(file->sweep->sampling));
+    json_decref(name);
+
+    TRY(sweep_store_rows(of, (sweep_share){0, 0}, write_json_row, file, f));
+    fputs("\n  ]\n}\n", stream);
+    return STATUS_OK;
+}
+
+status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
+{
+    rows_file file = {.stream = stream,
+                      .sweep = database_of(of)->sweep,
+                      .csv = csv_begin(stream),
+                      .separator = "\n    "};
+    file.count = sweep_store_columns(file.sweep, file.columns);
     if (json) {
-        fputs("\n  ]\n}\n", stream);
+        return write_json(of, &file, f);
     }
-    if (sqlite3_finalize(rows) == SQLITE_OK) {
-        return STATUS_OK;
-    }
-    return database_fault(store, f);
+    result_headings(&file.csv, file.columns, file.count);
+    return sweep_store_rows(of, (sweep_share){0, 0}, write_csv_row, &file, f);
 }
 
 // --- columns, for whoever draws them ---------------------------------------------------

@@ -10,6 +10,7 @@
 
 #include <stdio.h>
 
+#include "src/study/result_rows.h"
 #include "src/study/sweep_run.h"
 
 // Opens the database of the sweep, or creates it. path NULL keeps everything in memory.
@@ -36,6 +37,24 @@ status sweep_store_put(sweep_store *store, size_t run, const summary *result, fa
 status sweep_store_quantity(sweep_store *store, sweep_share share, const char *key,
                             double *values, size_t *failed, fault *f)
     __attribute__((warn_unused_result));
+
+// --- rows ------------------------------------------------------------------------------
+
+// The most columns of a sweep's table.
+enum { SWEEP_COLUMNS = 1 + SWEEP_MOST_AXES + 2 + SUMMARY_NUMBERS + 1 };
+
+// The columns of a sweep's table, whichever of its runs are there: run, varied values,
+// status, message, the quantities that do not depend on the machine and, where a value
+// of some run has no effect, `without_effect`, the paths of these. Returns how many.
+int sweep_store_columns(const sweep *s, result_column columns[SWEEP_COLUMNS]);
+
+// Takes a row of the table, of a run counted from 0; false: no other one is wanted.
+typedef bool sweep_row_taker(void *context, size_t run, const result_cell *cells);
+
+// Hands on the rows of a share in the order of the runs. STATUS_NO_MEMORY, or what is
+// wrong with the database.
+status sweep_store_rows(sweep_store *store, sweep_share share, sweep_row_taker *take,
+                        void *context, fault *f) __attribute__((warn_unused_result));
 
 // Writes all rows in the order of the runs. As CSV: run, varied values, status, message,
 // then the quantities that do not depend on the machine; the header is name[unit]. As

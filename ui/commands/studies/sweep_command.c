@@ -7,6 +7,7 @@
 
 #include "render/plot/study_plot.h"
 #include "src/base/whole_file.h"
+#include "src/exchange/sweep_table.h"
 #include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 #include "ui/commands/command_pictures.h"
@@ -123,7 +124,9 @@ static void print_sweep(const sweep_order *o, const sweep_store *store,
     print_counts(o, failed, p);
 
     // each value, where no file has them
-    if (a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL) {
+    const bool in_file = a->csv != NULL || a->json != NULL || a->parquet != NULL ||
+                         a->db != NULL || a->plot != NULL;
+    if (!in_file) {
         print_run_list(o->sweep, store, values);
     }
     print_extremes(o, values);
@@ -131,9 +134,27 @@ static void print_sweep(const sweep_order *o, const sweep_store *store,
 
 // --- files -----------------------------------------------------------------------------
 
-// Writes all rows to a file, as JSON or CSV; path NULL: nothing is asked for. Returns the
-// exit status.
-static int write_sweep_rows(sweep_store *store, const char *path, bool json)
+// Writes the rows there are as Parquet; errors of the stream stay in it.
+static status write_parquet(const sweep_order *o, sweep_store *store, FILE *stream,
+                            fault *f)
+{
+    result_column columns[SWEEP_COLUMNS];
+    const int count = sweep_store_columns(o->sweep, columns);
+    sweep_table table;
+    if (sweep_table_begin(&table, stream, columns, count) != STATUS_OK) {
+        return fault_no_memory(f);
+    }
+    const status code = sweep_store_rows(store, o->share, sweep_table_row, &table, f);
+    sweep_table_end(&table, o->sweep->base);
+    return code;
+}
+
+typedef enum rows_format { ROWS_CSV, ROWS_JSON, ROWS_PARQUET } rows_format;
+
+// Writes the rows there are, of a part or of the whole sweep, to a file; path NULL:
+// nothing is asked for. Returns the exit status.
+static int write_sweep_rows(const sweep_order *o, sweep_store *store, const char *path,
+                            rows_format format)
 {
     whole_file file;
     fault f = {0};
@@ -143,7 +164,12 @@ static int write_sweep_rows(sweep_store *store, const char *path, bool json)
     if (whole_file_open(&file, path, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    const status written = sweep_store_write(store, file.stream, json, &f);
+    status written;
+    if (format == ROWS_PARQUET) {
+        written = write_parquet(o, store, file.stream, &f);
+    } else {
+        written = sweep_store_write(store, file.stream, format == ROWS_JSON, &f);
+    }
     if (whole_file_close(&file, written, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -170,8 +196,9 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     }
 
     // files first: what is printed may be cut off
-    int result = write_sweep_rows(store, a->csv, false);
-    result = worse(result, write_sweep_rows(store, a->json, true));
+    int result = write_sweep_rows(o, store, a->csv, ROWS_CSV);
+    result = worse(result, write_sweep_rows(o, store, a->json, ROWS_JSON));
+    result = worse(result, write_sweep_rows(o, store, a->parquet, ROWS_PARQUET));
     if (a->plot != NULL) {
         result = worse(result, plot_sweep(o, values));
     }
@@ -194,8 +221,8 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
 
 // --- the request -----------------------------------------------------------------------
 
-// Reads --part K/N, which needs a database: what a part computes is good for being
-// merged. Returns the exit status.
+// Reads --part K/N, which needs a database or a Parquet file: what a part computes is
+// good for being put together with the others. Returns the exit status.
 static int read_share(const arguments *a, sweep_share *share)
 {
     char rest;
@@ -211,9 +238,10 @@ static int read_share(const arguments *a, sweep_share *share)
     }
 
     // a part alone can only be kept
-    if (a->db == NULL) {
-        return complain(
-            "--part %s keeps its runs in a database, expected --db FILE.sqlite", a->part);
+    if (a->db == NULL && a->parquet == NULL) {
+        return complain("--part %s keeps its runs for others, expected --db FILE.sqlite "
+                        "or --parquet FILE.parquet",
+                        a->part);
     }
     if (a->csv != NULL || a->json != NULL || a->plot != NULL) {
         return complain("--part %s is not the whole sweep: --csv, --json and --plot come "
@@ -252,13 +280,17 @@ static status plan_sweep(const arguments *a, const scenario *base, sweep *s, fau
 
 // --- the runs --------------------------------------------------------------------------
 
-// Says what there is of a part of a sweep. Returns the exit status.
+// Says what there is of a part of a sweep, and where. Returns the exit status.
 static int report_part(const sweep_order *o, const sweep_progress *p)
 {
-    if (!o->arguments->quiet) {
+    const arguments *a = o->arguments;
+    const char *place = a->db;
+    if (place == NULL) {
+        place = a->parquet;
+    }
+    if (summary_wanted(a)) {
         say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario->name,
-            o->share.part, o->share.parts, p->done, o->sweep->run_count,
-            o->arguments->db);
+            o->share.part, o->share.parts, p->done, o->sweep->run_count, place);
     }
     if (p->failed > 0 && p->failed == p->total) {
         return EXIT_FAILED;
@@ -289,15 +321,18 @@ static int run_and_report_sweep(const sweep_order *o, sweep_store *store)
     if (!is_part && progress.done > 0) {
         result = report_sweep(o, store, &progress);
         what_became = "the results are those of these";
+    } else if (is_part && progress.done > 0 && o->arguments->parquet != NULL) {
+        result = write_sweep_rows(o, store, o->arguments->parquet, ROWS_PARQUET);
+        what_became = "the results are those of these";
     }
 
     // what has to be said of runs that are missing
     if (is_stopped) {
-        return many_runs_stopped(o->arguments->db, progress.done, progress.total,
-                                 what_became);
+        return worse(result, many_runs_stopped(o->arguments->db, progress.done,
+                                               progress.total, what_became));
     }
     if (is_part) {
-        result = report_part(o, &progress);
+        result = worse(result, report_part(o, &progress));
     }
     return result;
 }
@@ -306,6 +341,9 @@ static int run_and_report_sweep(const sweep_order *o, sweep_store *store)
 static int sweep_and_report(const arguments *a, scenario *base)
 {
     sweep_order o = {.arguments = a, .scenario = base, .quantity = "peak_force_N"};
+    if (refuse_bytes_on_screen("parquet", a->parquet) != EXIT_DONE) {
+        return EXIT_BAD_ARGUMENTS;
+    }
     if (a->quantity != NULL) {
         o.quantity = a->quantity;
     }
@@ -333,10 +371,14 @@ static const option_row rows[] = {
     SEED_OPTION,
     JOBS_OPTION,
     DB_OPTION("keep every run in a database; go on where it ends"),
-    OPTION(TEXT, "part", "K/N",
-           "compute every N-th run from the K-th on; impactlab merge joins the parts",
-           PLACE(part)),
+    OPTION(
+        TEXT, "part", "K/N",
+        "compute every N-th run from the K-th on; impactlab merge joins databases, and "
+        "Parquet files in one folder are one table",
+        PLACE(part)),
     OPTION(RESULT, "csv", "FILE|-", "write a row for each run", PLACE(csv)),
+    OPTION(RESULT, "parquet", "FILE.parquet",
+           "write them for pandas, polars, DuckDB or Spark", PLACE(parquet)),
     PLOT_OPTION("draw the quantity over one or two parameters"),
     OPTION(QUANTITY, "quantity", "KEY", "what to draw and to sum up (peak_force_N)",
            PLACE(quantity)),
