@@ -296,7 +296,12 @@ TEST(what_cannot_be_read_whole_is_not_taken_for_less)
         const status code = read_all(whole, &f);
         if (code != STATUS_OK) {
             failures++;
-            check_said(&f);
+
+            // what a merge writes may be at fault, too
+            const bool writes = code == STATUS_CANNOT_WRITE;
+            if (!writes || strstr(f.text, "'merged'") == NULL) {
+                check_said(&f);
+            }
         }
         if (calls < k) {
             assert_int_equal(code, STATUS_OK);

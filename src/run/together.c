@@ -43,11 +43,11 @@ struct side_by_side {
     taylor_group series; // of the runs that step together
 };
 
-// Puts the storage of a run's events aside, unless an earlier one is there.
+// Puts the storage of a run's events aside, if there is any and no earlier one.
 static void keep_events(side_run *one)
 {
     shared_array events = trace_take_events(&one->recording.result->trace);
-    if (one->events.capacity == 0) {
+    if (events.capacity > 0 && one->events.capacity == 0) {
         one->events = events;
     } else {
         shared_array_finish(&events);

@@ -15,7 +15,12 @@ status database_fault(const sweep_database *store, fault *f)
 {
     int code = sqlite3_errcode(store->database) & 0xFF;
     const char *why = sqlite3_errmsg(store->database);
-    const char *path = store->path ? store->path : "the results in memory";
+    const char *path = "the results in memory";
+    if (store->told != NULL) {
+        path = store->told;
+    } else if (store->path != NULL) {
+        path = store->path;
+    }
 
     if (code == SQLITE_NOMEM) {
         return fault_no_memory(f);

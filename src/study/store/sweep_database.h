@@ -33,8 +33,9 @@ typedef struct sweep_database {
     const sweep *sweep;
     sqlite3 *database;
     sqlite3_stmt *insert;
-    char *path; // NULL: in memory
-    int lock;   // descriptor that holds the lock, -1 if there is none
+    char *path;       // NULL: in memory
+    const char *told; // the file that faults name; NULL: path
+    int lock;         // descriptor that holds the lock, -1 if there is none
     bool in_transaction;
     char stamp[SHA256_TEXT]; // of what the runs read from outside
 } sweep_database;

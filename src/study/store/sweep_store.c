@@ -298,11 +298,14 @@ status sweep_store_commit(sweep_store *of, fault *f)
 
 // --- parts of one sweep, computed apart, together in one database ----------------------
 
-// The merged sweep while it grows, in memory.
+// The merged sweep while it grows: in the temporary that becomes the output, so that it
+// takes no memory; where there is none, since the output is a pipe or a device, in
+// memory.
 typedef struct merging {
+    whole_file file;
     sweep plan;            // which values each run has
     definition definition; // of the first part; all others are compared with it
-    sweep_database store;  // in memory
+    sweep_database store;
     sweep_merged *merged;
 } merging;
 
@@ -327,8 +330,16 @@ static status begin_merged(merging *m, const char *path, fault *f)
     status code = definition_plan(&m->definition, path, &m->plan, f);
     m->merged->total = m->plan.run_count;
     m->store = (sweep_database){.sweep = &m->plan, .lock = -1};
+    if (m->file.temporary[0] != '\0') {
+        m->store.path = m->file.temporary;
+        m->store.told = m->file.path;
+    }
     TRY(code);
     TRY(database_open(&m->store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f));
+
+    // what fails is thrown away, and what is whole is brought to the disk at the end
+    TRY(database_execute(&m->store,
+                         "PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF", f));
     TRY(database_execute(&m->store, "BEGIN", f));
     TRY(make_tables(&m->store, f));
     TRY(write_definition(&m->store, &m->definition, f));
@@ -404,27 +415,31 @@ static status add_part(merging *m, char *path, bool first, fault *f)
     return code;
 }
 
-// The database as it would stand in a file, written whole or not at all.
-static status write_database(merging *m, const char *output, fault *f)
+// Writes the database in memory as it would stand in a file.
+static status write_database(merging *m, fault *f)
 {
-    TRY(database_execute(&m->store, "COMMIT", f));
-
-    // its bytes, as a file would have them
     sqlite3_int64 size = 0;
     unsigned char *bytes = sqlite3_serialize(m->store.database, "main", &size, 0);
     if (bytes == NULL) {
         return fault_no_memory(f);
     }
 
-    // into the file
-    whole_file file;
-    status code = whole_file_open(&file, output, f);
-    if (code == STATUS_OK) {
-        fwrite(bytes, 1, (size_t)size, file.stream); // errors stay in the stream
-        code = whole_file_commit(&file, f);
-    }
+    fwrite(bytes, 1, (size_t)size, m->file.stream); // errors stay in the stream
     sqlite3_free(bytes);
-    return code;
+    return STATUS_OK;
+}
+
+// Adds all parts; the first one decides what the others must be.
+static status merge_parts(merging *m, char *const *files, int count, fault *f)
+{
+    for (int i = 0; i < count; i++) {
+        TRY(add_part(m, files[i], i == 0, f));
+    }
+    TRY(database_execute(&m->store, "COMMIT", f));
+    if (m->store.path == NULL) {
+        return write_database(m, f);
+    }
+    return STATUS_OK;
 }
 
 status sweep_merge(char *const *files, int count, const char *output,
@@ -432,20 +447,14 @@ status sweep_merge(char *const *files, int count, const char *output,
 {
     assert(count > 0);
     merging m = {.merged = merged};
-    status code = STATUS_OK;
     *merged = (sweep_merged){0};
+    TRY(whole_file_open(&m.file, output, f));
+    const status code = merge_parts(&m, files, count, f);
 
-    // the first part decides what the others must be
-    for (int i = 0; i < count && code == STATUS_OK; i++) {
-        code = add_part(&m, files[i], i == 0, f);
-    }
-    if (code == STATUS_OK) {
-        code = write_database(&m, output, f);
-    }
-
+    // the database is closed before its file is put into its place
     definition_finish(&m.definition);
     sweep_finish(&m.plan);
     sqlite3_finalize(m.store.insert);
     sqlite3_close(m.store.database);
-    return code;
+    return whole_file_close(&m.file, code, f);
 }
