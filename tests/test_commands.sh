@@ -82,6 +82,16 @@ near "$(mode 'Hub free, tip free' 2)" "$(awk -v f="$soft" 'BEGIN { print 2 * f }
 expect 0 modes corrected/twenty-links
 says out "more (--json lists all)"
 
+# --- a long chain that nothing damps says so, and what damping would change is as it says
+short="--set arm.links=32 --set run.duration=0.31"
+# shellcheck disable=SC2086
+expect 0 run corrected/first-impact $short --json undamped.json
+says err "nothing damps the 32 links"
+# shellcheck disable=SC2086
+expect 0 run corrected/first-impact $short --set arm.damping_ratio=1e-4 --json damped.json
+grep -q "nothing damps" err && fail "a damped chain is said to be undamped"
+near "$(number undamped.json contact_impulse_Ns)" "$(number damped.json contact_impulse_Ns)" 0.01
+
 # --- the script of a scenario is shown as it will act
 printf 'title: scripted\nscript:\n- at: 0.1 s\n  set: {motor.voltage: 2 V}\n- at: 0.2 s\n  push: 0.01 N s\n' >scripted.yaml
 expect 0 show scripted.yaml

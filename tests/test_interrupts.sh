@@ -195,7 +195,7 @@ interrupted study methods corrected/first-impact --set arm.links=3 --plot method
 part methods.json
 interrupted study follow --set control.rate=2000 --json follow.json
 says err "of 96 runs were done"
-interrupted linear compare/hybrid --vary control.kv=0.1:5:3000 --csv linear.csv --json linear.json --plot linear.svg
+interrupted linear compare/hybrid --vary control.kv=0.1:5:20000 --csv linear.csv --json linear.json --plot linear.svg
 there=$(grep -o '[0-9]* of 3000' err | grep -o '^[0-9]*')
 [ "$(wc -l <linear.csv)" = $((there + 1)) ] && [ -s linear.svg ] || fail "the loops that were done are not kept"
 part linear.json
@@ -245,7 +245,7 @@ for early in "run endless.yaml --csv early.csv" "predict endless.yaml --json ear
     "sweep endless.yaml --vary motor.voltage=1,2 --csv early.csv" \
     "compare endless.yaml --csv early.csv" "converge endless.yaml --json early.json" \
     "study links endless.yaml --json early.json" "robust compare/hybrid --runs 20000 --csv early.csv" \
-    "linear compare/hybrid --vary control.kv=0.1:5:3000 --csv early.csv" \
+    "linear compare/hybrid --vary control.kv=0.1:5:20000 --csv early.csv" \
     "figures -o early" "report endless.yaml -o early" "plot recipe.yaml -o early.svg" \
     "animate endless.yaml -o early" "bench --json early.json"; do
     # shellcheck disable=SC2086

@@ -272,9 +272,26 @@ static int report_ending(const finished_run *run, status code)
     return EXIT_DONE;
 }
 
-// Says which values had no effect, and where the amplifier cut off the voltage.
+// Says that a long chain which nothing damps takes long: its fastest modes never die out,
+// and each takes steps of its own.
+static void note_undamped_chain(const parameters *p)
+{
+    enum { LONG = 32 };
+    const bool is_damped = p->arm.damping_ratio > 0 || p->arm.modal_ratios[0] != '\0';
+    if (p->arm.links >= LONG && !is_damped && p->method.name == METHOD_EVENT) {
+        fprintf(stderr,
+                "impactlab: note: nothing damps the %d links: with arm.damping_ratio = "
+                "1e-4 a run takes a quarter of the time with 32 links and a tenth with "
+                "64, its impulse changes by less than 1 %%\n",
+                p->arm.links);
+    }
+}
+
+// Says which values had no effect, where the amplifier cut off the voltage, and what
+// takes long.
 static void print_notes(const scenario *s)
 {
+    note_undamped_chain(&s->parameters);
     idle_value idle;
     for (int place = 0; effect_next_idle(s, &place, &idle);) {
         print_printable(stderr, "impactlab: note: %s has no effect: %s\n", idle.path,
