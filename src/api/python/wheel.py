@@ -28,7 +28,7 @@ Name: impactlab
 Version: {version}
 Summary: Impact and force control of a flexible robot arm
 License: MIT
-Requires-Python: >=3.8
+Requires-Python: >=3.9
 Requires-Dist: numpy
 Provides-Extra: frames
 Requires-Dist: pandas; extra == "frames"
