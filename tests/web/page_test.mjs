@@ -266,6 +266,26 @@ const tests = {
     await page.close();
   },
 
+  async "it plays on under a drag, and runs of an edited file stay beside each other"() {
+    const page = await openPage(`${address}index.html`, 1280, 900);
+    await page.keyboard.press("Home");
+    await page.keyboard.press("Space");
+    await drag(page, "#knob-motor-voltage", 0.6, 0.7);
+    assert.equal((await cells(page)).length, 2);
+    assert.equal(await textOf(page, "#play"), "Pause");
+    await page.keyboard.press("b");
+    await settled(page);
+
+    // the file becomes another one: reference and kept run are of that
+    await typeText(page, "title: soft\narm: {k2: 3 N m/rad}\nwall: {angle: 0.1 rad}\n");
+    const rows = await cells(page);
+    assert.equal(rows.length, 3);
+    const soft = nativeJson("corrected/first-impact", "--set", "arm.k2=3");
+    near(Number.parseFloat(rows[1][1]), soft.peak_force_N, 0.005);
+    assert.equal(rows[0][1], rows[2][1]);
+    await page.close();
+  },
+
   async "a sweep stands under its slider"() {
     const page = await openPage(`${address}index.html`, 1280, 900);
     await page.$eval("#knob-motor-voltage", (slider) =>

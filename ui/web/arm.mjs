@@ -1,6 +1,6 @@
 // The arm and the wall on a canvas: this run, where the other runs are at that instant, and where
 // this one was before.
-import { RUN_COLOURS, colour, digits } from "./words.mjs";
+import { colour, digits } from "./words.mjs";
 
 const GHOSTS = 4; // poses before this one
 const GHOST_STEP = 0.04; // between them [s]
@@ -94,11 +94,11 @@ export function createArm(canvas) {
     // runs beside this one, the ghosts of this one, then the arm itself
     pen.lineJoin = "round";
     for (let i = runs.length - 1; i > 0; i--) {
-      pen.strokeStyle = colour(RUN_COLOURS[i]);
+      pen.strokeStyle = colour(`run${i}`);
       pen.lineWidth = 2;
       polyline(jointsOf(runs[i], time));
     }
-    pen.strokeStyle = colour(RUN_COLOURS[0]);
+    pen.strokeStyle = colour("run0");
     for (let i = GHOSTS; i > 0; i--) {
       pen.globalAlpha = 0.35 / i;
       pen.lineWidth = 2;

@@ -37,11 +37,14 @@ export function createEditor({ lines, text, faults }, onText) {
     set(value) {
       if (text.value !== value) {
         text.value = value;
+        number();
       }
-      number();
     },
     // Each sentence begins with FILE:LINE:COLUMN, as compilers have it.
     complain(sentences) {
+      if (sentences.length === 0 && wrong.size === 0) {
+        return;
+      }
       wrong = new Map();
       const items = sentences.map((sentence) => {
         const place = sentence.match(/^.*?:(\d+):(\d+): /);

@@ -63,12 +63,12 @@ export function createEngine(startWorker, limit) {
     worker.postMessage(current.request);
   }
 
-  // Asks for something; a `newest` request takes the place of those of its kind that wait, which
-  // come to null, and of one that has been under way for long.
+  // Asks for something; a `newest` request takes the place of those of its kind and path that wait,
+  // which come to null, and of one that has been under way for long.
   function ask(request, { newest = false, progress } = {}) {
     return new Promise((resolve, reject) => {
       if (newest) {
-        dropOlder(request.kind);
+        dropOlder(request);
       }
       number += 1;
       waiting.push({ request: { ...request, number }, resolve, reject, progress, newest });
@@ -76,8 +76,9 @@ export function createEngine(startWorker, limit) {
     });
   }
 
-  function dropOlder(kind) {
-    const isOlder = (entry) => entry.newest && entry.request.kind === kind;
+  function dropOlder({ kind, path }) {
+    const isOlder = ({ newest, request }) =>
+      newest && request.kind === kind && request.path === path;
     waiting.filter(isOlder).forEach((entry) => entry.resolve(null));
     waiting = waiting.filter((entry) => !isOlder(entry));
     const slow = current;

@@ -113,11 +113,11 @@ export function createKnobs(host, tables, { onChange, sweep }) {
     knob.box = box;
     knob.update = (value) => {
       // a finger on the slider, or a caret in the field, is not pushed aside
-      if (document.activeElement !== field) {
+      if (document.activeElement !== field && !slider.matches(":active")) {
         field.value =
           value === null || value === undefined ? "" : String(Number(value.toPrecision(7)));
       }
-      if (document.activeElement !== slider || !slider.matches(":active")) {
+      if (!slider.matches(":active")) {
         slider.value = Math.round(STEPS * shareOf(knob.row.slider, value));
       }
       slider.setAttribute("aria-valuetext", `${digits(value, 4)} ${row.unit}`);

@@ -52,7 +52,10 @@ static void keep_sentence(void *sentences, const char *sentence)
 
 static json_t *parameter_object(const parameter_info *info)
 {
-    const char *choices = info->type == PARAMETER_CHOICE ? info->choices : "";
+    const char *choices = "";
+    if (info->type == PARAMETER_CHOICE) {
+        choices = info->choices;
+    }
     json_t *object =
         json_of("path:t unit:t choices:t about:t timed:b text:b", info->path, info->unit,
                 choices, info->description, info->timed, parameter_is_text(info));

@@ -14,7 +14,7 @@ import {
   summaryOf,
 } from "./results.mjs";
 import { FIRST_SCENARIO, MOST_KEPT, hashOf, stateOf } from "./state.mjs";
-import { RUN_COLOURS, element, fillTable, measured, shortName } from "./words.mjs";
+import { element, fillTable, measured, shortName } from "./words.mjs";
 
 const RUN_SECONDS = 8; // of computing, then a run ends with what it has
 const MOST_SECONDS = 12; // then the worker is ended
@@ -174,7 +174,9 @@ async function runBeside(run) {
   return true;
 }
 
-// Runs what the state says and draws it; the newest state wins.
+// Runs what the state says and draws it. While a knob is dragged a run may come when newer values are
+// known already: it is drawn, too, if it is of the same scenario.
+let refreshes = 0;
 async function refresh() {
   writeHash();
   at("scenario").value = state.scenario;
@@ -182,34 +184,36 @@ async function refresh() {
   if (besideOf !== besideWanted()) {
     beside = [];
   }
-  const asked = state;
+  refreshes += 1;
+  const asked = refreshes;
+  const wanted = besideWanted();
   document.body.dataset.state = "busy";
   try {
     const run = await runOf(state.changes, { newest: true });
-    if (run === null) {
+    if (run === null || wanted !== besideWanted()) {
       return;
     }
     take(run);
-    if ((await runBeside(run)) && asked === state) {
+    if ((await runBeside(run)) && asked === refreshes) {
       take(run);
     }
-    if (asked === state && !run.scenario.faults) {
+    if (asked === refreshes && !run.scenario.faults) {
       knobs.again(lastChange.path);
     }
   } catch (error) {
     besideOf = "";
     complain(error.message);
   }
-  if (asked === state) {
+  if (asked === refreshes) {
     requestAnimationFrame(() => (document.body.dataset.state = "drawn"));
   }
 }
 
-function sweep(path, values, take) {
+function sweep(path, values, progress) {
   const key = peakKey(runs[0].scenario.values);
   const more = { path, values, key, seconds: RUN_SECONDS / values.length };
   return sweeper
-    .ask(requestOf("sweep", state.changes, more), { newest: true, progress: take })
+    .ask(requestOf("sweep", state.changes, more), { newest: true, progress })
     .catch((error) => complain(error.message));
 }
 
@@ -248,7 +252,7 @@ function draw() {
   at("why").lastElementChild.textContent = run.account.sentences.join(" ");
   const late = run.late ? `; in the page a run computes for ${RUN_SECONDS} s at most` : "";
   complain(result.message + late);
-  knobs.update(scenario, state.changes);
+  knobs.update(scenario, run.changes);
   plots.draw(runs, panesOf(scenario), instant());
   arm.draw(runs, instant());
   showClock();
@@ -369,6 +373,13 @@ function play() {
   showClock();
 }
 
+function replay() {
+  seek(0);
+  if (!playing) {
+    play();
+  }
+}
+
 function setSpeed(by) {
   const place = SPEEDS.indexOf(speed) + by;
   speed = SPEEDS[Math.min(Math.max(place, 0), SPEEDS.length - 1)];
@@ -386,7 +397,7 @@ function picture() {
   runs.forEach(({ label, result }, i) => {
     const peak = measured(result[peakKey(runs[0].scenario.values)], "N");
     const impulse = measured(result.contact_impulse_Ns, "N s");
-    texts.push({ text: `━ ${label}: peak ${peak}, impulse ${impulse}`, ink: RUN_COLOURS[i] });
+    texts.push({ text: `━ ${label}: peak ${peak}, impulse ${impulse}`, ink: `run${i}` });
   });
   savePicture(`${fileName()}.png`, texts, [at("arm"), ...plots.canvases()]);
 }
@@ -452,7 +463,7 @@ const KEYS = [
   ["", "", ["End", "G"], () => seek(Infinity)],
   ["+ −", "faster, slower", ["+", "="], () => setSpeed(1)],
   ["", "", ["-"], () => setSpeed(-1)],
-  ["r", "play from the start", ["r", "Backspace"], () => (seek(0), playing || play())],
+  ["r", "play from the start", ["r", "Backspace"], replay],
   ["j k", "next knob, the one before", ["j"], () => knobs.move(1)],
   ["", "", ["k"], () => knobs.move(-1)],
   ["> <", "the knob a little up or down", [">"], () => knobs.nudge(1)],

@@ -1,6 +1,6 @@
 // Curves over time by uPlot: the force with half of the height, a lane of contacts and events, and
 // the signals that were chosen; each run has its colour, each signal of a pane its dash.
-import { RUN_COLOURS, colour, digits, element, measured } from "./words.mjs";
+import { colour, digits, element, measured, runMark } from "./words.mjs";
 
 const AXIS = 62; // room of the vertical axes [px]
 const RIGHT = 14; // beside the curves [px]
@@ -80,7 +80,7 @@ export function createPlots(host, units, onSeek) {
       pen.fillRect(plot.bbox.left, high, plot.bbox.width, low - high);
     }
     for (let i = shown.runs.length - 1; i >= 0; i--) {
-      pen.fillStyle = pen.strokeStyle = colour(RUN_COLOURS[i]);
+      pen.fillStyle = pen.strokeStyle = colour(`run${i}`);
       pen.lineWidth = 1.5 * scale;
       let free = -Infinity;
       for (const event of shown.runs[i].result.events) {
@@ -123,7 +123,7 @@ export function createPlots(host, units, onSeek) {
       names.map((name) => {
         const run = runs.length - 1 - place;
         const own = signalsOf(pane).indexOf(name);
-        const stroke = pane === "energy" ? colour(`signal${own}`) : colour(RUN_COLOURS[run]);
+        const stroke = colour(`run${pane === "energy" ? own : run}`);
         return {
           label: name,
           show: own >= 0 && (pane !== "energy" || run === 0),
@@ -202,7 +202,7 @@ export function createPlots(host, units, onSeek) {
     const share = plots[0].bbox.width / scale / (max - min);
     const place = (time) => left + (time - min) * share;
     shown.runs.forEach(({ signals }, i) => {
-      pen.fillStyle = colour(RUN_COLOURS[i]);
+      pen.fillStyle = colour(`run${i}`);
       for (let row = 0; row + 1 < signals.time.length; row++) {
         if (signals.contact[row] > 0) {
           const from = place(signals.time[row]);
@@ -247,7 +247,7 @@ export function createPlots(host, units, onSeek) {
 
   function energyKey() {
     const words = ENERGIES.map((name, i) =>
-      element("span", { className: `signal${i}` }, `━ ${name.replaceAll("_", " ")}`),
+      element("span", {}, runMark(i), name.replaceAll("_", " ")),
     );
     return element("p", { className: "key" }, ...words);
   }

@@ -1,5 +1,5 @@
 // What a run came to, in words and tables: the strip, why, predictors, events, all numbers.
-import { RUN_COLOURS, digits, element, fillTable, measured } from "./words.mjs";
+import { digits, element, fillTable, measured, runMark } from "./words.mjs";
 
 // The number that is the peak: on a rigid wall that of many links has no limit, what a sensor of
 // 1 ms sees has one.
@@ -34,8 +34,7 @@ export function fillStrip(table, runs, drop) {
   const columns = columnsOf(runs[0].scenario.values);
   const reference = runs.find((run) => run.isReference) ?? runs[0];
   const rows = runs.map((run, i) => {
-    const name = element("span", {}, element("span", { className: RUN_COLOURS[i] }, "━ "));
-    name.append(run.label);
+    const name = element("span", {}, runMark(i), run.label);
     if (run.kept !== undefined) {
       const button = element("button", { textContent: "×", onclick: () => drop(run.kept) });
       button.setAttribute("aria-label", `drop ${run.label}`);

@@ -64,5 +64,7 @@ export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
-// Colours of runs: this one, the reference, those that were kept.
-export const RUN_COLOURS = ["run0", "run1", "run2", "run3", "run4", "run5"];
+// A line in the colour of a run: 0 is this one, then the reference and those that are kept.
+export function runMark(run) {
+  return element("span", { style: `color: var(--run${run})` }, "━ ");
+}
