@@ -7,6 +7,7 @@
 // NPM_FOLDER has node_modules with puppeteer-core; pictures of the page go to OUTPUT_FOLDER.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
+import { createHash } from "node:crypto";
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
@@ -352,6 +353,32 @@ const tests = {
     await typeText(page, "title: right\nmotor: {voltage: 2 V}\nwall: {angle: 0.1 rad}\n");
     assert.equal(await textOf(page, "#message"), "");
     near(await peakOf(page), 2.51, 0.01);
+    await page.close();
+  },
+
+  async "traces of all shipped scenarios have the program's bytes in Chromium"() {
+    const page = await openPage(`${address}index.html`, 1280, 900);
+    const hashes = await page.evaluate(async () => {
+      const scenarios = await (await fetch("scenarios.json")).json();
+      const binary = await (await fetch("impactlab.wasm")).arrayBuffer();
+      const worker = new Worker("worker.js");
+      worker.postMessage({ compiled: await WebAssembly.compile(binary) });
+      const found = [];
+      for (const { name, text } of scenarios) {
+        worker.postMessage({ kind: "csv", number: 1, name, text, changes: {}, seconds: 600 });
+        const { data } = await new Promise((resolve) => (worker.onmessage = resolve));
+        const bytes = new TextEncoder().encode(data.answer ?? data.failure);
+        const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", bytes));
+        found.push([name, Array.from(hash, (byte) => byte.toString(16).padStart(2, "0")).join("")]);
+      }
+      return found;
+    });
+    assert.ok(hashes.length > 50);
+    for (const [name, hash] of hashes) {
+      const options = ["run", name, "--csv", "-", "--quiet"];
+      const { stdout } = spawnSync(program, options, { maxBuffer: 2 ** 28 });
+      assert.equal(hash, createHash("sha256").update(stdout).digest("hex"), name);
+    }
     await page.close();
   },
 

@@ -68,7 +68,7 @@ export function createKnobs(host, tables, { onChange, sweep }) {
     const settings = lawless
       ? []
       : [...rows.keys()].filter((path) => path.startsWith("control.settings."));
-    const given = scenario.given.filter((path) => !path.startsWith("method."));
+    const given = scenario.given.filter((path) => !/^method\.|^control\.settings$/.test(path));
     const wanted = [usual[0], "control.law", ...asked, ...Object.keys(changes)];
     const others = [...usual, ...given, ...scenario.law.shared].filter((path) => !idle.has(path));
     const paths = [...new Set([...wanted, ...others])].filter((path) => rows.has(path));

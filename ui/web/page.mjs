@@ -127,8 +127,10 @@ function writeHash() {
 
 // --- computing -------------------------------------------------------------------------------
 
-function complain(text) {
+// Says what went wrong, or a remark on what did not.
+function complain(text, isRemark = false) {
   at("message").textContent = text;
+  at("message").classList.toggle("remark", isRemark);
 }
 
 function labelOf(changes) {
@@ -251,7 +253,7 @@ function draw() {
   at("why").firstElementChild.textContent = run.account.line;
   at("why").lastElementChild.textContent = run.account.sentences.join(" ");
   const late = run.late ? `; in the page a run computes for ${RUN_SECONDS} s at most` : "";
-  complain(result.message + late);
+  complain(result.message + late, result.status === "ok");
   knobs.update(scenario, run.changes);
   plots.draw(runs, panesOf(scenario), instant());
   arm.draw(runs, instant());
