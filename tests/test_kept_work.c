@@ -198,14 +198,14 @@ static int count_keys(const char *keys)
     return count;
 }
 
-// How much voltage so that the peak stays below 2 N? At most 25 keys, with completion.
+// How much voltage so that the peak stays below 2 N? At most 20 keys, with completion.
 TEST(test_a_limit_is_asked_for_in_few_keys)
 {
     static const char keys[] = ":so<Tab>vo<Tab> pea<Tab>N<lt>2<Enter>";
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.3<Enter>");
     const double before = peak(&ex);
-    assert_true(count_keys(keys) <= 25);
+    assert_true(count_keys(keys) <= 20);
     press(&ex, keys);
     assert_shows_everywhere(&ex, "up to motor.voltage = 1.4441 V: 2.0000 N");
     assert_shows_everywhere(&ex, "limit");

@@ -183,3 +183,21 @@ TEST(knobs_are_few_and_lead_to_all)
         press(&ex, "<Esc>");
     }
 }
+
+// The instants of touches and releases stand beside their marks, as far as they were
+// seen.
+TEST(touches_and_releases_are_told_on_the_axis)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    const event *e = ex.model.session.run.trace.events;
+    press(&ex, ":seek 0.4<Enter>");
+    const char *hit = formatted("hit %.4g\u25b2", e[0].time);
+    assert_shows(&ex, hit, "!off 0.");
+    for (EACH(size, four_sizes)) {
+        assert_shows_at(&ex, (*size)[0], (*size)[1], hit);
+    }
+
+    // of a release where the flight behind it is long enough for the words
+    press(&ex, "<End>");
+    assert_shows_at(&ex, 200, 60, "off 0.4775");
+}

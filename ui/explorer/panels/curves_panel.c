@@ -302,6 +302,9 @@ static void draw_pane_title(const explorer_model *model, const explorer_view *vi
 
 // --- the panes -------------------------------------------------------------------------
 
+// Dots far apart: the mark of measured data.
+enum { MEASURED_PATTERN = 0x1111 };
+
 // How a run's curves differ from those of others: beside others it has one colour, and
 // the lines of its curves tell the signals.
 static void set_look(const explorer_model *model, plot_frame *f, const pane *p,
@@ -318,6 +321,7 @@ static void set_look(const explorer_model *model, plot_frame *f, const pane *p,
         f->colour = INK_FRAME;
     } else if (run->kind == SHOWN_MEASURED && p->view != VIEW_RESIDUAL) {
         f->colour = INK_TEXT;
+        f->pattern = MEASURED_PATTERN;
     }
 }
 

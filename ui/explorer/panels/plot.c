@@ -419,6 +419,32 @@ static void draw_event(screen *s, int x, int y, event_kind kind, bool seen)
     }
 }
 
+// When the arm touches or lets go, in words on the line of the axis where nothing else
+// is: of a touch before its mark, of a release behind it.
+static void draw_event_instant(screen *s, area line, int x, const event *v)
+{
+    char text[32];
+    const bool touches = v->kind == EVENT_IMPACT || v->kind == EVENT_CONTACT;
+    if (!touches && v->kind != EVENT_RELEASE) {
+        return;
+    }
+    snprintf(text, sizeof text, "%s %.4g", touches ? "hit" : "off", v->time);
+    const int length = (int)strlen(text);
+    const int start = touches ? x - length : x + 1;
+    if (start < line.x || start + length > line.x + line.width) {
+        return;
+    }
+
+    // over the line and its ticks only
+    for (int i = 0; i < length; i++) {
+        const uint32_t glyph = s->cells[(long)line.y * s->width + start + i].glyph;
+        if (glyph != GLYPH_LINE && glyph != GLYPH_TICK_DOWN) {
+            return;
+        }
+    }
+    screen_text(s, start, line.y, length, INK_EVENT, text);
+}
+
 area draw_time_axis(const explorer_model *model, const explorer_view *view, screen *s,
                     area a)
 {
@@ -447,6 +473,14 @@ area draw_time_axis(const explorer_model *model, const explorer_view *view, scre
     for (int i = 0; i < model->note_count; i++) {
         const int x = time_column(model, view, line, model->notes[i].time);
         screen_put(s, x, a.y, '!', INK_TITLE);
+    }
+
+    // the instants of touches and releases beside their marks
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
+        const int x = time_column(model, view, line, t->events[i].time);
+        if (x >= 0) {
+            draw_event_instant(s, line, x, &t->events[i]);
+        }
     }
 
     // the meaning of the marks, next to them
