@@ -93,19 +93,6 @@ TEST(test_no_colour_in_mono)
     }
 }
 
-TEST(test_the_number_of_colours_is_a_setting)
-{
-    OPEN_EXPLORER(ex, "corrected/first-impact");
-    assert_int_equal(ex.view.looks.depth, DEPTH_AUTO);
-    press(&ex, ":colours true<Enter>");
-    assert_int_equal(ex.view.looks.depth, DEPTH_TRUE);
-    press(&ex, ":colours 256<Enter>");
-    assert_int_equal(ex.view.looks.depth, DEPTH_256);
-    press(&ex, ":colours 17<Enter>");
-    assert_int_equal(ex.view.looks.depth, DEPTH_256);
-    assert_shows(&ex, "'17' is none of auto, true, 256, 16, mono");
-}
-
 // Two signals with colours that a terminal of 16 colours shows as one.
 static void find_alike(colour_theme theme, int pair[2])
 {
@@ -133,7 +120,7 @@ TEST(test_curves_of_a_pane_differ_with_few_colours)
         OPEN_EXPLORER(ex, scenarios[n % 2]);
         const colour_theme theme = n < 2 ? COLOURS_LIGHT : COLOURS_DARK;
         ex.view.looks.theme = theme;
-        ex.view.looks.shown_depth = DEPTH_16;
+        ex.view.looks.depth = DEPTH_16;
         press(&ex, ":panes 12345678<Enter>");
         if (theme == COLOURS_LIGHT) {
             int pair[2] = {0};

@@ -102,8 +102,7 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
 {
     make_settings(NULL);
     OPEN_EXPLORER(keeps, "corrected/first-impact");
-    press(&keeps, ":theme light<Enter>:glyphs blocks<Enter>:colours 16<Enter>:axis -0.5 "
-                  "2.25 1<Enter>");
+    press(&keeps, ":theme light<Enter>:glyphs blocks<Enter>:axis -0.5 2.25 1<Enter>");
     press_shows(&keeps,
                 ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace "
                 "5<Enter>:unkey x<Enter>:key Space step 3<Enter>:key # "
@@ -114,7 +113,6 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
     assert_string_equal(ex.input.message.text, "");
     assert_int_equal(ex.view.looks.theme, COLOURS_LIGHT);
     assert_int_equal(ex.view.looks.glyphs, GLYPHS_BLOCKS);
-    assert_int_equal(ex.view.looks.depth, DEPTH_16);
     assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_FIXED);
     check_close(ex.view.panes.pane[0].fixed.low, -0.5, 0);
     check_close(ex.view.panes.pane[0].fixed.high, 2.25, 0);

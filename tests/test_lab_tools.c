@@ -361,7 +361,6 @@ TEST(arguments_are_completed_by_their_kind)
     press_prompts(&ex, "<C-u>solve motor.voltage set<Tab>",
                   "solve motor.voltage settling_time_s ");
     press_prompts(&ex, "<C-u>session o<Tab>", "session open ");
-    press_prompts(&ex, "<C-u>colours 2<Tab>", "colours 256 ");
     press_prompts(&ex, "<C-u>sweep arm.k2=4:6:3 motor.voltage_<Tab>",
                   "sweep arm.k2=4:6:3 motor.voltage_limit ");
     press_prompts(&ex, "<C-u>speed x<Tab>", "speed x");

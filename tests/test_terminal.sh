@@ -327,14 +327,9 @@ await "ready>"
 colours "COLORTERM=truecolor" "" "38;2;255;150;40m" "38;5;"
 colours "COLORTERM=24bit" "--theme light" "38;2;175;70;0m" "38;5;"
 colours "COLORTERM=" "" "38;5;" "38;2;"
-colours "COLORTERM=" "--colours true" "38;2;255;150;40m" "38;5;"
-colours "COLORTERM=truecolor" "--colours 256" "38;5;" "38;2;"
-colours "COLORTERM=truecolor" "--colours 16" "\[9[0-7]m" "38;[25];"
-colours "COLORTERM=truecolor" "--colours mono" "\[1m" "38;[25];"
 colours "COLORTERM=truecolor" "--theme mono" "\[1m" "38;[25];"
 colours "COLORTERM=truecolor NO_COLOR=1" "" "\[1m" "38;[25];"
 colours "COLORTERM=truecolor NO_COLOR=" "" "38;2;" ""
-colours "COLORTERM=truecolor NO_COLOR=1" "--colours true" "38;2;" ""
 colours "COLORTERM=truecolor TERM=vt100" "" "\[1m" "38;[25];"
 colours "COLORTERM=truecolor TERM=linux" "" "\[3[1-7]m" "38;[25];"
 colours "-u TMUX COLORTERM=truecolor TERM=screen" "" "\[3[1-7]m" "38;[25];"
@@ -349,13 +344,11 @@ mux send-keys Escape
 suspend
 mux send-keys "clear; fg" Enter
 await "impactlab  corrected/first-impact"
-await "voltage_limit"
+await "knobs (/ all"
 mux resize-window -x 120 -y 40
-mux send-keys ":colours 256" Enter
+mux send-keys ":theme mono" Enter
 sleep 0.2
-mux send-keys ":colours mono" Enter
-sleep 0.2
-mux send-keys ":colours true" Enter
+mux send-keys ":theme dark" Enter
 await "impactlab  corrected/first-impact"
 mux send-keys q
 await "ready>"

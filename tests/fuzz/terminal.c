@@ -23,8 +23,8 @@ static void step(explorer *ex, escape_sequence *sequence, uint8_t kind, uint8_t 
                            FUZZ_PICK(which, "set motor.voltage 2", "set wall.angle 0.1",
                                      "seek 0.05", "branch", "undo", "set motor.voltage x",
                                      "panes 27", "theme mono", "law hybrid", "law none",
-                                     "set run.duration 0.2", "colours 16", "mouse off",
-                                     "key x seek 0", "redo"));
+                                     "set run.duration 0.2", "mouse off", "key x seek 0",
+                                     "redo"));
         break;
     case 2:
         report = (pointer_event){.kind = (pointer_kind)(kind / 5 % 5),

@@ -214,8 +214,7 @@ static const term exit_status[] = {
 static const term environment[] = {
     {"IMPACTLAB_SCENARIOS", "Folders with further scenarios, separated by colons; of two "
                             "of one name theirs counts."},
-    {"NO_COLOR", "If not empty, the terminal lab shows no colours unless --colours or "
-                 "its settings ask for them."},
+    {"NO_COLOR", "If not empty, the terminal lab shows no colours."},
     {"COLORTERM",
      "If truecolor or 24bit, the terminal has colours by red, green and blue."},
     {"XDG_CONFIG_HOME", "Where the terminal lab keeps its settings, in impactlab/lab; "

@@ -168,14 +168,11 @@ static void show_lab(live_lab *lab)
 
     // what looks ask of the terminal
     terminal_mouse(l->mouse);
-    l->shown_depth = l->depth;
-    if (l->depth == DEPTH_AUTO) {
-        l->shown_depth = terminal_depth();
-    }
+    l->depth = terminal_depth();
 
     // the picture
     explorer_draw(lab->ex, s);
-    terminal_show(s, l->glyphs, l->theme, l->depth, l->redraw);
+    terminal_show(s, l->glyphs, l->theme, l->redraw);
     l->redraw = false;
     loss_forget(); // the next picture shows what this one lacks
 }
@@ -373,9 +370,8 @@ static int set_look_option(explorer *ex, const char *name, const char *value)
 // Sets the looks that the command line asks for. Returns the exit status.
 static int set_look_options(explorer *ex, const arguments *a)
 {
-    int result = set_look_option(ex, "glyphs", a->glyphs);
-    result = worse(result, set_look_option(ex, "theme", a->theme));
-    return worse(result, set_look_option(ex, "colours", a->colours));
+    const int result = set_look_option(ex, "glyphs", a->glyphs);
+    return worse(result, set_look_option(ex, "theme", a->theme));
 }
 
 // Opens the lab on the scenario or session that is named. Returns the exit status; unless
@@ -471,8 +467,6 @@ static const option_row rows[] = {
     OPTION(CHOICE, "glyphs", "braille|blocks|ascii", "characters to draw with",
            PLACE(glyphs)),
     OPTION(CHOICE, "theme", "dark|light|mono", "colours for that ground", PLACE(theme)),
-    OPTION(CHOICE, "colours", "auto|true|256|16|mono",
-           "how many of them the terminal has", PLACE(colours), .alias = "colors"),
 };
 const option_table lab_options = OPTION_TABLE("Options", rows);
 

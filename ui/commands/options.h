@@ -170,7 +170,7 @@ typedef struct arguments {
     double fps, seconds, slow; // of a film [1/s], [s], [1]; 0 if not given
 
     // the lab
-    const char *keys, *script, *glyphs, *theme, *colours;
+    const char *keys, *script, *glyphs, *theme;
 
     // help
     const char *completion; // the shell

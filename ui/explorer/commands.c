@@ -277,7 +277,7 @@ bool act_session(explorer_model *model, explorer_view *view, explorer_input *inp
 
 // The commands that :remember writes, with blanks round each.
 static const char remembered[] =
-    " theme glyphs colours pixels closeup mouse bending rate lanes slow speed "
+    " theme glyphs pixels closeup mouse bending rate lanes slow speed "
     "panes axis key unkey ";
 
 // Executes a line of the file, where only what :remember writes is taken.

@@ -45,7 +45,7 @@ typedef enum colour_theme {
 
 // The assumed number of colours of the terminal.
 typedef enum colour_depth {
-    DEPTH_AUTO, // as reported by the terminal
+    DEPTH_UNKNOWN,
     DEPTH_TRUE, // red, green and blue
     DEPTH_256,
     DEPTH_16,

@@ -45,8 +45,7 @@ terminal_input terminal_wait(double seconds);
 
 // Shows the cells and the pictures; only what has changed is sent. `whole`: everything
 // anew.
-void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme,
-                   colour_depth depth, bool whole);
+void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, bool whole);
 
 // Bytes sent so far past ncurses: pictures are nearly all of them.
 size_t terminal_sent(void);
@@ -63,7 +62,7 @@ typedef struct terminal_pixels {
 terminal_pixels terminal_pixels_known(void);
 
 // The terminal's number of colours according to its description and the environment:
-// never DEPTH_AUTO. DEPTH_MONO with NO_COLOR.
+// never DEPTH_UNKNOWN. DEPTH_MONO with NO_COLOR.
 colour_depth terminal_depth(void);
 
 // Whether the terminal reports a light background (in COLORFGBG, as some do).

@@ -404,13 +404,10 @@ bool terminal_is_light(void)
     return last != NULL && (strcmp(last, ";7") == 0 || strcmp(last, ";15") == 0);
 }
 
-void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme,
-                   colour_depth depth, bool whole)
+void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, bool whole)
 {
     assert(s->width > 0 && s->height > 0);
-    if (depth == DEPTH_AUTO) {
-        depth = terminal_depth();
-    }
+    const colour_depth depth = terminal_depth();
 
     // with another size, theme or depth everything is drawn again
     const bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;

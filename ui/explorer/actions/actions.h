@@ -118,7 +118,6 @@ bool act_lanes(explorer_view *view, explorer_input *input, const char *argument)
 bool act_palette(explorer_view *view, explorer_input *input, const char *argument);
 bool act_glyphs(explorer_view *view, explorer_input *input, const char *argument);
 bool act_theme(explorer_view *view, explorer_input *input, const char *argument);
-bool act_colours(explorer_view *view, explorer_input *input, const char *argument);
 bool act_pixels(explorer_view *view, explorer_input *input, const char *argument);
 bool act_rate(explorer_view *view, explorer_input *input, const char *argument);
 bool act_closeup(explorer_view *view, explorer_input *input, const char *argument);

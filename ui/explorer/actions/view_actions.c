@@ -397,11 +397,6 @@ bool act_glyphs(explorer_view *view, explorer_input *input, const char *argument
     return choose(view, input, "glyphs", argument);
 }
 
-bool act_colours(explorer_view *view, explorer_input *input, const char *argument)
-{
-    return choose(view, input, "colours", argument);
-}
-
 bool act_pixels(explorer_view *view, explorer_input *input, const char *argument)
 {
     return choose(view, input, "pixels", argument);

@@ -25,7 +25,7 @@ static bool colour_is_taken(const explorer_view *view, const pane_look *look, in
     const ink wanted = (ink)(INK_SERIES_0 + slot);
     const looks *l = &view->looks;
     for (int k = 0; k < curves; k++) {
-        if (inks_look_alike(l->theme, l->shown_depth, look->colour[k], wanted)) {
+        if (inks_look_alike(l->theme, l->depth, look->colour[k], wanted)) {
             return true;
         }
     }

@@ -169,8 +169,6 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "characters to draw with")                                                         \
     X("", "theme", act_theme(view, input, argument), "", "dark|light|mono",              \
       "colours for that ground")                                                         \
-    X("", "colours", act_colours(view, input, argument), "", "auto|true|256|16|mono",    \
-      "how many the terminal has")                                                       \
     X("", "pixels", act_pixels(view, input, argument), "", "auto|off",                   \
       "pictures where the terminal has them")                                            \
     X("", "rate", act_rate(view, input, argument), "", "KB|off",                         \

@@ -38,7 +38,6 @@ bool filter_passes(const char *filter, const char *text)
 const look_choice look_choices[] = {
     {LOOK("theme", theme), false, {"dark", "light", "mono"}, {NULL}},
     {LOOK("glyphs", glyphs), false, {"braille", "blocks", "ascii"}, {NULL}},
-    {LOOK("colours", depth), false, {"auto", "true", "256", "16", "mono"}, {NULL}},
     {LOOK("pixels", pixels),
      false,
      {"off", "auto"},

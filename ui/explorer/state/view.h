@@ -89,17 +89,16 @@ typedef enum close_up_choice {
 
 // Choices are values of their enumerations.
 typedef struct looks {
-    int glyphs;      // glyph_set
-    int theme;       // colour_theme
-    int depth;       // colour_depth
-    int shown_depth; // the depth in use; DEPTH_AUTO without a terminal
-    int lanes;       // lane_choice
-    int pixels;      // not 0: pictures are drawn if the terminal has them
-    int close_up;    // close_up_choice
-    double rate;     // most that pictures may take [kB/s], 0: no limit
-    double bending;  // factor by which bending is enlarged
-    int mouse;       // not 0: mouse reports are on
-    bool redraw;     // the whole screen must be redrawn
+    int glyphs;     // glyph_set
+    int theme;      // colour_theme
+    int depth;      // colour_depth of the terminal; DEPTH_UNKNOWN without one
+    int lanes;      // lane_choice
+    int pixels;     // not 0: pictures are drawn if the terminal has them
+    int close_up;   // close_up_choice
+    double rate;    // most that pictures may take [kB/s], 0: no limit
+    double bending; // factor by which bending is enlarged
+    int mouse;      // not 0: mouse reports are on
+    bool redraw;    // the whole screen must be redrawn
 } looks;
 
 // A command that chooses one of a few words for how the lab looks.
