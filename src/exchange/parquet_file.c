@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/extremes.h"
 #include "src/base/shipped.h"
 #include "src/base/text_stream.h"
 
@@ -165,8 +166,10 @@ static void thrift_close(thrift *t)
 // missing, and runs of fields that are there (level 1) or missing (level 0).
 typedef struct column_chunk {
     byte_string values, levels;
-    size_t run; // fields of the latest run, which is not in levels yet
-    int level;  // of that run
+    size_t run;            // fields of the latest run, which is not in levels yet
+    int level;             // of that run
+    size_t missing;        // fields
+    double least, largest; // of numbers that are there; largest is less where none is
 } column_chunk;
 
 struct parquet_file {
@@ -187,6 +190,15 @@ static void put(parquet_file *p, const void *bytes, size_t size)
 {
     fwrite(bytes, 1, size, p->stream);
     p->written += size;
+}
+
+// Begins a group: nothing is there yet.
+static void begin_chunk(column_chunk *c)
+{
+    c->levels.length = c->values.length = 0;
+    c->missing = 0;
+    c->least = HUGE_VAL;
+    c->largest = -HUGE_VAL;
 }
 
 parquet_file *parquet_begin(FILE *stream, const parquet_column *columns, int count)
@@ -212,6 +224,9 @@ parquet_file *parquet_begin(FILE *stream, const parquet_column *columns, int cou
         p->group_rows = MOST_ROWS;
     }
 
+    for (int i = 0; i < count; i++) {
+        begin_chunk(&p->chunks[i]);
+    }
     put(p, magic, sizeof magic);
     return p;
 }
@@ -234,6 +249,18 @@ static void add_level(column_chunk *c, int level)
         c->level = level;
     }
     c->run++;
+    c->missing += level == 0;
+}
+
+// Eight bytes of a number as its column has it.
+static void add_number(byte_string *b, parquet_type type, double value)
+{
+    if (type == PARQUET_WHOLE_NUMBER) {
+        const int64_t whole = (int64_t)value;
+        add_bytes(b, &whole, sizeof whole);
+    } else {
+        add_bytes(b, &value, sizeof value);
+    }
 }
 
 void parquet_number(parquet_file *p, int column, double value)
@@ -244,13 +271,10 @@ void parquet_number(parquet_file *p, int column, double value)
     if (isnan(value)) {
         return;
     }
+    c->least = smaller(value, c->least);
+    c->largest = larger(value, c->largest);
 
-    if (p->columns[column].type == PARQUET_WHOLE_NUMBER) {
-        const int64_t whole = (int64_t)value;
-        add_bytes(&c->values, &whole, sizeof whole);
-    } else {
-        add_bytes(&c->values, &value, sizeof value);
-    }
+    add_number(&c->values, p->columns[column].type, value);
 }
 
 void parquet_text(parquet_file *p, int column, const char *text)
@@ -291,9 +315,32 @@ static int type_of(const parquet_column *column)
     return types[column->type];
 }
 
-// Says in the footer where a column of a group lies: at that byte, of that size.
-static void tell_column(thrift *t, const parquet_column *column, size_t rows, size_t from,
-                        size_t size)
+// A number as the bytes of its column's type.
+static void thrift_number(thrift *t, int number, parquet_type type, double value)
+{
+    thrift_field(t, number, THRIFT_BINARY);
+    add_varint(t->to, sizeof value);
+    add_number(t->to, type, value);
+}
+
+// Says how many fields are missing and between what its numbers lie, so that a reader can
+// pass over the group. A zero stands for both signs: the largest is +0, the least -0.
+static void tell_range(thrift *t, const column_chunk *c, parquet_type type)
+{
+    thrift_field(t, 12, THRIFT_STRUCT);
+    thrift_open(t);
+    thrift_whole(t, 3, THRIFT_I64, c->missing);
+    if (c->least <= c->largest) {
+        thrift_number(t, 5, type, c->largest == 0 ? 0.0 : c->largest);
+        thrift_number(t, 6, type, c->least == 0 ? -0.0 : c->least);
+    }
+    thrift_close(t);
+}
+
+// Says in the footer where a column of a group lies, at that byte, of that size, and what
+// is in it.
+static void tell_column(thrift *t, const parquet_column *column, const column_chunk *c,
+                        size_t rows, size_t from, size_t size)
 {
     thrift_open(t);
     thrift_whole(t, 2, THRIFT_I64, from);
@@ -310,6 +357,7 @@ static void tell_column(thrift *t, const parquet_column *column, size_t rows, si
     thrift_whole(t, 6, THRIFT_I64, size); // as it is, and compressed
     thrift_whole(t, 7, THRIFT_I64, size);
     thrift_whole(t, 9, THRIFT_I64, from);
+    tell_range(t, c, column->type);
     thrift_close(t);
     thrift_close(t);
 }
@@ -330,9 +378,8 @@ static void write_column(parquet_file *p, thrift *t, int column)
     if (c->values.length > 0) {
         put(p, c->values.at, c->values.length);
     }
-    tell_column(t, &p->columns[column], p->rows, from, p->written - from);
-
-    c->levels.length = c->values.length = 0;
+    tell_column(t, &p->columns[column], c, p->rows, from, p->written - from);
+    begin_chunk(c);
 }
 
 // Writes the present group, if it has rows, and begins the next.
@@ -411,6 +458,18 @@ static void tell_notes(thrift *t, const parquet_file *p, const parquet_note *not
     }
 }
 
+// That the ranges of all columns are in the order of their types.
+static void tell_orders(thrift *t, const parquet_file *p)
+{
+    thrift_list(t, 7, THRIFT_STRUCT, (size_t)p->count);
+    for (int i = 0; i < p->count; i++) {
+        thrift_open(t);
+        thrift_field(t, 1, THRIFT_STRUCT);
+        add_byte(t->to, 0);
+        thrift_close(t);
+    }
+}
+
 // Writes what the file says of itself, its size, and the magic word again.
 static void write_footer(parquet_file *p, const parquet_note *notes, int note_count)
 {
@@ -426,6 +485,7 @@ static void write_footer(parquet_file *p, const parquet_note *notes, int note_co
     add_bytes(&p->scratch, p->footer.at, p->footer.length);
     tell_notes(&t, p, notes, note_count);
     thrift_text(&t, 6, creator);
+    tell_orders(&t, p);
     add_byte(&p->scratch, 0);
 
     add_word(&p->scratch, p->scratch.length);

@@ -77,6 +77,19 @@ def plain(data, at, kind, count):
     return struct.unpack_from(f"<{count}{'d' if kind == 5 else 'q'}", data, at), at + 8 * count
 
 
+def check_range(told, kind, values, rows):
+    assert told[3] == rows - len(values)
+    if kind != 6 and values:
+        code = "<d" if kind == 5 else "<q"
+        least, largest = struct.unpack(code, told[6])[0], struct.unpack(code, told[5])[0]
+        assert (least, largest) == (min(values), max(values))
+        if kind == 5:
+            assert least != 0 or told[6][7] == 0x80, "a least zero is -0"
+            assert largest != 0 or told[5][7] == 0, "a largest zero is +0"
+    else:
+        assert 5 not in told and 6 not in told
+
+
 def read_parquet(path):
     """Columns by name, None where a field is missing, and the notes."""
     data = open(path, "rb").read()
@@ -102,10 +115,12 @@ def read_parquet(path):
             levels, start = levels_of(data, start, group[3])
             values, at = plain(data, start, about[1], sum(levels))
             assert at - about[9] == about[6] == about[7]
+            check_range(about[12], about[1], values, group[3])
             each = iter(values)
             columns[column[4].decode()] += [next(each) if level else None for level in levels]
         assert group[2] == at - begin
         rows += group[3]
+    assert footer[7] == [{1: {}}] * len(schema)
     assert rows == footer[3] and at == len(data) - 8 - size
     return columns, {note[1].decode(): note[2].decode() for note in footer[5]}
 

@@ -44,6 +44,8 @@ const synonym_row synonym_table[] = {
     {"identification estimation", "identify|fit"},
     {"mistakes slips", "errata|errors"},
     {"matlab", "octave|mat"},
+    {"pandas polars duckdb spark arrow pyarrow dataframe", "parquet|pandas"},
+    {"resample resampled equidistant fft", "uniform steps"},
     {"excel spreadsheet libreoffice", "spreadsheet|csv"},
     {"cluster hpc parallel cores", "machines|jobs|processors"},
     {"performance slow", "speed"},
