@@ -533,6 +533,11 @@ TEST(rows_on_a_grid)
     for (EACH(w, wrong)) {
         check_refused(impactlab_run_grid(run, *w, NULL, 0, &count, &told), "more than 0");
     }
+
+    // a run without rows has none there
+    own_run *bare = run_of(scenario, 0);
+    check_done(impactlab_run_grid(bare, every, rows, count, &count, &told));
+    assert_int_equal(count, 0);
 }
 
 // All signals at once are each of them, to the last bit; a short array gets the first.

@@ -8,7 +8,7 @@
 set -euo pipefail
 build=$1
 source=$2
-lab=$3
+lab=$(readlink -f "$3")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 unset IMPACTLAB_SCENARIOS IMPACTLAB_LIBRARY IMPACTLAB_PROGRAM PYTHONPATH
