@@ -50,6 +50,7 @@ static void keep_sentence(void *sentences, const char *sentence)
 
 // --- tables ----------------------------------------------------------------------------
 
+// A row of the parameters' table.
 static json_t *parameter_object(const parameter_info *info)
 {
     const char *choices = "";
@@ -232,6 +233,7 @@ EMSCRIPTEN_KEEPALIVE const char *page_change(const char *assignments)
     return answer_scenario(code, faults, 0);
 }
 
+// What is handed out as a text of its own kind, not JSON.
 static void write_scenario(FILE *stream)
 {
     scenario_write(stream, &changed);
