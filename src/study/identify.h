@@ -19,6 +19,8 @@
 #include "src/study/sweep_axis.h"
 
 #define IDENTIFY_GUARD 0.01 // [s]
+// standard normal deviate that white residuals exceed once in 4000
+#define IDENTIFY_WHITE 3.5
 #define IDENTIFY_BLOCK 0.05 // time over which residuals of noise may be correlated [s]
 // of a direction: smaller ones do not make a parameter undetermined
 #define IDENTIFY_PART 1e-6

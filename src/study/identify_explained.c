@@ -7,8 +7,6 @@
 #include "src/rig/sensors.h"
 #include "src/study/identify.h"
 
-// standard normal deviate that white residuals exceed once in 4000
-#define WHITE       3.5
 #define NOISE_KNOWN 2.0 // factor within which a bench knows its noise
 // standard deviations that chi square is not above its mean by chance
 #define CHANCE 5.0
@@ -182,7 +180,7 @@ static status judge_trace(identification *id, int number, const double *residual
         find_size(&c, &id->base->parameters.sensor);
         t->whiteness[channel] = whiteness_of(series, t->rows, c.count);
         const bool has_say = channel != CHANNEL_ENCODER || !has_tachometer;
-        id->white = id->white && !(has_say && t->whiteness[channel] > WHITE);
+        id->white = id->white && !(has_say && t->whiteness[channel] > IDENTIFY_WHITE);
         if (has_say) {
             find_worst_stretch(id, &c, worst);
         }

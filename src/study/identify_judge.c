@@ -143,6 +143,25 @@ static size_t residuals_of_channel(const recorded_trace *t, int channel)
     return count;
 }
 
+// The mean square of a channel's residuals in all traces; NaN where those of a trace are
+// not white, or too few to say.
+static double white_square(const identification *id, int channel)
+{
+    double squares = 0, count = 0;
+    for (int k = 0; k < id->trace_count; k++) {
+        const recorded_trace *t = &id->traces[k];
+        const double of_trace = (double)residuals_of_channel(t, channel);
+        if (of_trace > 0 && !(t->whiteness[channel] < IDENTIFY_WHITE)) {
+            return (double)NAN;
+        }
+        if (of_trace > 0) {
+            squares += of_trace * t->rms[channel] * t->rms[channel];
+            count += of_trace;
+        }
+    }
+    return squares / count;
+}
+
 // Adds a channel of all traces to the information, the products of the parameters'
 // columns, and to the scatter, which is that times how far the channel's residuals r
 // scatter where a parameter with the column a shows: over blocks longer than residuals
@@ -151,8 +170,9 @@ static size_t residuals_of_channel(const recorded_trace *t, int channel)
 //     rho = mean over parameters of: sum over blocks of (sum in the block of a r)^2 over
 //           the sum of a^2
 //
-// It is 1 for white residuals of deviation 1, below that for the rounding of an encoder
-// that moves, which has no slow part, and above it where the model lacks something.
+// It is below 1 for the rounding of an encoder that moves, which has no slow part, and
+// above it where the model lacks something. Of white residuals it is their mean square,
+// which few blocks tell less well.
 static void add_channel(const identification *id, int channel, const double *alone,
                         double *information, double *scatter)
 {
@@ -183,6 +203,10 @@ static void add_channel(const identification *id, int channel, const double *alo
         rho = rho / shown;
     } else {
         rho = 1;
+    }
+    const double white = white_square(id, channel);
+    if (white > 0) {
+        rho = white;
     }
     for (int i = 0; i < p * p; i++) {
         information[i] += sums.products[i];

@@ -1,0 +1,288 @@
+// How often the intervals of identify hold the true values, with its default options:
+// recordings of four set-ups that a scenario describes, and of two benches by programs of
+// their own, whose amplifier lags, whose sensors show 0.2 % too much and whose hub has
+// play.
+//
+//     test_fit_coverage RECORDINGS [SETUP]
+#include "src/study/identify.h"
+
+#include "tests/bench_arm.h"
+#include "tests/rig_fixture.h"
+
+#define SPREAD 0.15 // share by which true values are drawn about the scenario's
+
+enum { FITTED = 3, BENCH_SAMPLES = 300, BENCH_RATE = 200 };
+
+static int recordings = 2;
+static const char *only;
+
+typedef enum recorder { BY_LAB, BY_FORMULA, BY_MUJOCO } recorder;
+
+typedef struct set_up {
+    const char *name;
+    recorder recorder;
+    bool reverses;        // the command, three times
+    const char *settings; // of the scenario
+    const char *fits[FITTED];
+} set_up;
+
+#define BENCH                                                                            \
+    "control.law=open-loop control.approach_voltage=1 control.rate=200 arm.links=8 "     \
+    "wall.kind=plane wall.contact=kelvin-voigt wall.stiffness=2000 wall.damping=20"
+
+static const set_up set_ups[] = {
+    {"free",
+     BY_LAB,
+     true,
+     "control.law=open-loop control.approach_voltage=3 control.rate=500 "
+     "initial.angle=-1.5 wall.kind=none",
+     {"arm.k2", "arm.hub_inertia", "motor.stiction"}},
+    {"rigid",
+     BY_LAB,
+     false,
+     "control.law=open-loop control.approach_voltage=1 control.rate=200",
+     {"arm.k2", "arm.hub_inertia", "motor.stiction"}},
+    {"giving",
+     BY_LAB,
+     false,
+     "control.law=open-loop control.approach_voltage=1 control.rate=200 arm.links=3 "
+     "arm.tip_mass=0.01 wall.contact=kelvin-voigt wall.stiffness=20000 wall.damping=5",
+     {"arm.k2", "arm.tip_mass", "motor.stiction"}},
+    {"closed",
+     BY_LAB,
+     false,
+     "control.law=hybrid control.force=1 control.approach_voltage=2 control.rate=500 "
+     "initial.angle=-0.3",
+     {"arm.k2", "motor.torque_constant", "motor.stiction"}},
+    {"formula", BY_FORMULA, true, BENCH, {"arm.k2", "arm.hub_inertia", "motor.stiction"}},
+    {"mujoco", BY_MUJOCO, true, BENCH, {"arm.k2", "arm.hub_inertia", "motor.stiction"}},
+};
+
+enum { SET_UPS = sizeof set_ups / sizeof *set_ups };
+
+// --- recordings ------------------------------------------------------------------------
+
+static double normal(random_generator *random)
+{
+    double sum = -6;
+    for (int i = 0; i < 12; i++) {
+        sum += random_uniform(random);
+    }
+    return sum;
+}
+
+static FILE *open_recording(char file[64])
+{
+    snprintf(file, 64, "/tmp/test_fit_coverage.XXXXXX");
+    FILE *stream = fdopen(mkstemp(file), "w");
+    assert_non_null(stream);
+    fputs("time[s],command[V],encoder[rad],tachometer[rad/s],force_reading[N]\n", stream);
+    return stream;
+}
+
+// What the lab's rig reads at each sample.
+static void record_by_lab(const scenario *s, char file[64])
+{
+    FILE *stream = open_recording(file);
+    KEPT_RUN(run) = run_done(s, true);
+    const double rate = s->parameters.control.rate;
+    for (int k = 0; k < (int)(s->parameters.run.duration * rate); k++) {
+        // the row in the middle of the period shows what the sample at its beginning read
+        const sample *row = &run.trace.rows[trace_row_at(&run.trace, (k + 0.6) / rate)];
+        fprintf(stream, "%.17g,%.17g,%.17g,%.17g,%.17g\n", k / rate, row->command,
+                row->encoder, row->tachometer, row->force_reading);
+    }
+    assert_int_equal(fclose(stream), 0);
+}
+
+// Volts as an A/D converter of 12 bits over 10 V either way gives them, with noise.
+static double converted(random_generator *random, double volts, double noise)
+{
+    const double step = 20.0 / 4096;
+    return step * round((volts + noise * normal(random)) / step);
+}
+
+// The bench of a scenario's parameters, with what no scenario holds.
+static bench_arm bench_of(const parameters *p, int links)
+{
+    const motor_parameters *m = &p->motor;
+    return (bench_arm){.links = links,
+                       .length = p->arm.length,
+                       .mass = p->arm.mass,
+                       .rotor_inertia = p->arm.hub_inertia,
+                       .joint_stiffness = p->arm.k2 * links / 2,
+                       .torque_per_volt =
+                           m->amplifier_gain * m->torque_constant / m->resistance,
+                       .damping = m->viscous_friction +
+                                  m->torque_constant * m->back_emf / m->resistance,
+                       .stiction = m->stiction,
+                       .wall_stiffness = 2000,
+                       .wall_damping = 20,
+                       .start = -0.1,
+                       .amplifier_lag = 2e-3,
+                       .play = 1e-3,
+                       .force_lag = 1.5e-3 / log(9)};
+}
+
+// What the sensors of a bench read: an encoder of 8000 counts, a tachometer of 2 V s/rad
+// with its ripple, and a resistor 30 kohm (f/1 N)^-0.75 with 40 kohm at 10 V.
+static void record_bench(const set_up *u, const parameters *p, random_generator *random,
+                         char file[64])
+{
+    static double command[BENCH_SAMPLES];
+    static bench_sample read[BENCH_SAMPLES];
+    const double gain = 1.002, count = 2 * M_PI / 8000;
+    for (int k = 0; k < BENCH_SAMPLES; k++) {
+        command[k] = k / 80 % 2 == 0 ? 1 : -1;
+    }
+    if (u->recorder == BY_FORMULA) {
+        const bench_arm a = bench_of(p, 8);
+        bench_arm_run(&a, command, BENCH_SAMPLES, BENCH_RATE, read);
+    } else {
+        const bench_arm a = bench_of(p, 32);
+        assert_true(bench_arm_run_mujoco(&a, command, BENCH_SAMPLES, BENCH_RATE, read));
+    }
+
+    FILE *stream = open_recording(file);
+    for (int k = 0; k < BENCH_SAMPLES; k++) {
+        const double ripple = 1 + 0.01 * sin(79 * read[k].angle);
+        const double speed =
+            converted(random, 2 * gain * ripple * read[k].velocity, 0.01) / 2;
+        const double felt = gain * read[k].force;
+        const double volts = felt > 0 ? 10 * 40 / (40 + 30 * pow(felt, -0.75)) : 0;
+        const double shown = converted(random, volts, 0.02);
+        const double force =
+            shown > 0 ? pow(30 * shown / (40 * (10 - shown)), 4.0 / 3) : 0;
+        fprintf(stream, "%.17g,%g,%.17g,%.17g,%.17g\n", (double)k / BENCH_RATE,
+                command[k], count * round(read[k].angle / count), speed, force);
+    }
+    assert_int_equal(fclose(stream), 0);
+}
+
+// --- fits ------------------------------------------------------------------------------
+
+// What came of a set-up's recordings.
+typedef struct outcome {
+    int covered[FITTED],
+        none[FITTED];     // intervals that hold the truth; that are not there
+    double error[FITTED]; // largest, as a share of the truth
+    // sums of the errors over those that are stated, and of the squares of that
+    double sum[FITTED], squares[FITTED];
+    int found, explained;
+} outcome;
+
+static void fit_recording(const set_up *u, int number, outcome *o)
+{
+    static action reversals[3];
+    char file[64];
+    random_generator random;
+    random_seed(&random, (uint64_t)number + 1);
+    scenario base = {.name = (char *)u->name, .actions = reversals};
+    base.parameters = rig_parameters_with("%s control.seed=%d", u->settings, number + 1);
+    for (int i = 0; i < 3 && u->reverses && u->recorder == BY_LAB; i++) {
+        reversals[i] =
+            SETS(0.25 + 0.4 * i, control.approach_voltage, i % 2 == 0 ? -3.0 : 3.0);
+        base.action_count = 3;
+    }
+
+    // the true values
+    scenario other = base;
+    double truth[FITTED];
+    for (int i = 0; i < FITTED; i++) {
+        const int index = parameter_find(u->fits[i]);
+        truth[i] = parameter_get(&base.parameters, index) *
+                   (1 + SPREAD * (2 * random_uniform(&random) - 1));
+        DONE(parameter_set_number(&other.parameters, index, truth[i], &f));
+    }
+    parameters p = other.parameters;
+    DONE(scenario_take_parameters(&other, &p, &f));
+    if (u->recorder == BY_LAB) {
+        record_by_lab(&other, file);
+    } else {
+        record_bench(u, &other.parameters, &random, file);
+    }
+
+    SCOPED(identify_finish)
+    identification id = {.base = &base, .jobs = 2, .starts = IDENTIFY_STARTS};
+    for (int i = 0; i < FITTED; i++) {
+        DONE(identify_add_path(&id, u->fits[i], &f));
+    }
+    DONE(identify_add_trace(&id, file, NULL, 0, &f));
+    unlink(file);
+    DONE(identify_fit(&id, &f));
+    o->found += identify_settled(&id) && id.undetermined == 0;
+    o->explained += identify_explained(&id);
+    for (int i = 0; i < FITTED; i++) {
+        const fitted_parameter *fit = &id.fit[i];
+        o->covered[i] += fit->low <= truth[i] && truth[i] <= fit->high;
+        o->none[i] += isnan(fit->low);
+        o->error[i] = fmax(o->error[i], fabs(fit->value / truth[i] - 1));
+        const double off = (fit->value - truth[i]) / fit->standard_error;
+        if (!isnan(off)) {
+            o->sum[i] += off;
+            o->squares[i] += off * off;
+        }
+    }
+}
+
+static void study(const set_up *u)
+{
+    outcome o = {.found = 0};
+    if (only != NULL && strcmp(only, u->name) != 0) {
+        return;
+    }
+    for (int k = 0; k < recordings; k++) {
+        fit_recording(u, k, &o);
+    }
+    print_message("%s: found %d, explained %d of %d\n", u->name, o.found, o.explained,
+                  recordings);
+    for (int i = 0; i < FITTED; i++) {
+        print_message("    %-24s covered %d of %d, none for %d; off by %.2f of the "
+                      "stated errors, %+.2f in the mean; at most by %.2g %%\n",
+                      u->fits[i], o.covered[i], recordings, o.none[i],
+                      sqrt(o.squares[i] / recordings), o.sum[i] / recordings,
+                      100 * o.error[i]);
+    }
+
+    // by four standard deviations of a binomial number, with many recordings as asked for
+    const double spread = 4 * sqrt(0.95 * 0.05 * recordings);
+    const double least = fmax(0.9 * recordings, 0.95 * recordings - spread);
+    for (int i = 0; i < FITTED && u->recorder == BY_LAB; i++) {
+        assert_true(o.covered[i] >= fmin(least, 0.95 * recordings - 1));
+        assert_true(recordings < 200 || o.covered[i] <= 0.99 * recordings);
+    }
+    if (u->recorder != BY_LAB) {
+        check_below(o.error[0], 0.03);
+        assert_true(o.explained <= 0.1 * recordings);
+    }
+}
+
+TEST(intervals_hold_the_truth_where_the_scenario_is_right)
+{
+    for (int i = 0; i < SET_UPS; i++) {
+        if (set_ups[i].recorder == BY_LAB) {
+            study(&set_ups[i]);
+        }
+    }
+}
+
+TEST(what_a_bench_has_more_is_named)
+{
+    for (int i = 0; i < SET_UPS; i++) {
+        const bool has = set_ups[i].recorder != BY_MUJOCO || bench_has_mujoco();
+        if (set_ups[i].recorder != BY_LAB && has) {
+            study(&set_ups[i]);
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    fault f;
+    recordings = argc > 1 ? atoi(argv[1]) : recordings;
+    only = argc > 2 ? argv[2] : NULL;
+    if (identify_available(&f) != STATUS_OK) {
+        return 77;
+    }
+    return run_cases(NULL, NULL);
+}
