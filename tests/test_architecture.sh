@@ -12,7 +12,7 @@ cd "$1"
 rooms="src/base src/tables src/arm src/thesis src/contact src/engines src/engines/pair src/engines/newmark
     src/engines/stiff src/predict src/rig/controller src/rig/external
     src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/study/linear src/study/robust
-    src/study/store src/exchange src/api/impactlab src/api
+    src/study/store src/exchange/fmu/fmi2 src/exchange/fmu src/exchange src/api/impactlab src/api
     render/page render/plot render/scene render/figures
     ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands
     ui/commands/studies ui/commands/exchange ui/web ui"
@@ -24,8 +24,8 @@ room_of() {
 
 # "module room header-module header-room" of each include of the project's own files
 list_includes() {
-    # what stands in board goes out with an exported law and is no part of the lab
-    find src render ui -name board -prune -o -name '*.[ch]' -print0 | xargs -0 grep -HE '^ *# *include "' |
+    # what stands in board goes out with an exported law and is no part of the lab; fmi2 is of others
+    find src render ui \( -name board -o -name fmi2 \) -prune -o -name '*.[ch]' -print0 | xargs -0 grep -HE '^ *# *include "' |
         sed -E 's/^([^:]*):[^"]*"([^"]*)".*/\1 \2/' |
         while read -r file header; do
             echo "${file%.[ch]} $(room_of "$file") ${header%.[ch]} $(room_of "$header")"

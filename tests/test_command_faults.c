@@ -156,6 +156,7 @@ static const struct {
      "touch.yaml --data recorded.csv --fit motor.resistance --starts 1 --jobs 1", USUAL},
     {"linear", "law.yaml --law", USUAL},
     {"export", "law.yaml -o results/board", USUAL},
+    {"fmu", "law.yaml -o results/arm.fmu", USUAL},
     {"linear", "touch.yaml --at free", ALONE},
     {"animate",
      "hit.yaml --size 320x240 --fps 4 --seconds 0.5 --slow 1 --gl cairo -o "

@@ -243,7 +243,7 @@ expect 0 run hit.yaml $recorded --set run.duration=0.3 --set arm.tip_mass=0.004 
 declare -A besides=([run]='' [predict]='' [modes]='' [converge]='' [compare]='hit.yaml' [show]=''
     [sweep]='--vary motor.voltage=1:2:2' [study]='' [robust]='--set control.force=1 --laws hybrid,force-pd --runs 3'
     [tune]='--set control.force=1 --set control.law=hybrid --vary control.kv=0.5:1 --minimise peak_force_N --runs 6'
-    [calibrate]='' [linear]='' [identify]="$recorded --data fits.csv --fit arm.hub_inertia" [solve]='' [animate]='' [lab]='' [lesson]='' [export]='')
+    [calibrate]='' [linear]='' [identify]="$recorded --data fits.csv --fit arm.hub_inertia" [solve]='' [animate]='' [lab]='' [lesson]='' [export]='' [fmu]='')
 title_of() { sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' "$1" | head -1; }
 expect 0 help
 for command in $(awk '/^  [a-z]/ { print $1 }' out); do

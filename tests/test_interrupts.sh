@@ -289,7 +289,7 @@ fi
 
 # every command has had its turn, but for those that are over at once and the lab, where ^C is a key
 for name in $("$program" help | sed -n 's/^  \([a-z]*\)  .*/\1/p'); do
-    case " $tried list show check help merge lesson lab calibrate report identify tune export " in
+    case " $tried list show check help merge lesson lab calibrate report identify tune export fmu " in
     *" $name "*) ;;
     *) fail "impactlab $name was not interrupted" ;;
     esac

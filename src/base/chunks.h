@@ -8,8 +8,12 @@
 
 enum { ARRAY_CHUNK = 128 * 1024 }; // [bytes]
 
-// Whether there are chunks on this machine; without them nothing else here is called.
+// Whether there are chunks on this machine; without them nothing else here is called but
+// machine_memory.
 bool chunks_exist(void);
+
+// The memory of the machine [bytes], HUGE_VAL where that is not known.
+double machine_memory(void);
 
 // Address space that a program may take in all [bytes].
 size_t chunks_address_space(void);

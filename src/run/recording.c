@@ -3,9 +3,9 @@
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "src/arm/motor.h"
+#include "src/base/chunks.h"
 #include "src/base/clock.h"
 #include "src/base/instant.h"
 
@@ -124,7 +124,7 @@ static status check_room(const recording *r, double rows, int angle_count, fault
 {
     const parameters *p = &r->scenario->parameters;
     const double bytes = rows * (double)trace_row_bytes(angle_count), gigabyte = 1e9;
-    const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    const double memory = machine_memory();
     if (bytes <= memory) {
         return STATUS_OK;
     }

@@ -1,7 +1,6 @@
 #include "src/tables/features.h"
 
 #include <assert.h>
-#include <fnmatch.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <string.h>
@@ -235,6 +234,29 @@ _Static_assert(RULES < 64, "a word has a bit for each rule, and the last bit");
 // The last bit of a parameter's rules says that they have been looked up.
 #define LOOKED_UP (UINT64_C(1) << 63)
 
+// Whether a pattern fits a path: "*" is any text, "[ab]" one of these characters, "[!ab]"
+// any other one.
+static bool pattern_fits(const char *pattern, const char *path)
+{
+    if (*pattern == '*') {
+        const bool rest_fits = pattern_fits(pattern + 1, path);
+        return rest_fits || (*path != '\0' && pattern_fits(pattern, path + 1));
+    }
+    if (*pattern == '\0' || *path == '\0') {
+        return *pattern == *path;
+    }
+    if (*pattern != '[') {
+        return *pattern == *path && pattern_fits(pattern + 1, path + 1);
+    }
+
+    // one character of a set
+    const bool others = pattern[1] == '!';
+    const char *set = pattern + 1 + others, *end = strchr(set, ']');
+    assert(end != NULL);
+    const bool among = memchr(set, *path, (size_t)(end - set)) != NULL;
+    return among != others && pattern_fits(end + 1, path + 1);
+}
+
 // Whether one of several patterns, which have blanks between them, fits a path.
 static bool any_pattern_fits(const char *patterns, const char *path)
 {
@@ -246,7 +268,7 @@ static bool any_pattern_fits(const char *patterns, const char *path)
         if (rest[0] == path[0]) {
             assert(length < sizeof pattern);
             memcpy(pattern, rest, length);
-            if (fnmatch(pattern, path, 0) == 0) {
+            if (pattern_fits(pattern, path)) {
                 return true;
             }
         }

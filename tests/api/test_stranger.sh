@@ -120,6 +120,7 @@ arguments() {
     compare) echo "$2 corrected/first-impact" ;;
     study) echo "sensor $2" ;;
     export) echo "$2 -o $work/out/export-$2" ;;
+    fmu) echo "$2 -o $work/out/$2.fmu" ;;
     tune) echo "$2 --vary motor.voltage=1:2 --minimise peak_force_N --runs 4" ;;
     robust) echo "$2 --over draws.set --runs 2" ;;
     animate) echo "$2 -o $work/out/frames-$2 --gl cairo --fps 2 --seconds 1 --size 160x120" ;;

@@ -7,7 +7,7 @@ static atomic_int limit; // 0: none
 
 static int widest(void)
 {
-#if defined __x86_64__
+#if defined __x86_64__ && !defined ONE_WIDTH
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl")) {
         return 8;
@@ -35,7 +35,7 @@ int taylor_limit_width(int width)
 // The loops of so many lanes.
 static const taylor_loops *loops_of(int width)
 {
-#if defined __x86_64__
+#if defined __x86_64__ && !defined ONE_WIDTH
     if (width == 8) {
         return &taylor_loops_8;
     }

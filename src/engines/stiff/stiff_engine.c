@@ -473,7 +473,7 @@ static size_t stiff_init(const arm *a, void *memory)
     layout l = {.block = memory};
     memset(s, 0, sizeof *s);
     s->loops = &stiff_loops_1;
-#if defined __x86_64__
+#if defined __x86_64__ && !defined ONE_WIDTH
     if (taylor_width() >= 4) {
         s->loops = &stiff_loops_4;
     }
