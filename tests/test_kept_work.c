@@ -87,7 +87,12 @@ TEST(test_leaving_asks_for_everything_that_would_be_lost)
         const char *keys, *lost;
     } cases[] = {{"b", "1 pinned run would"},
                  {"b:set arm.k2 5<Enter>b", "1 change and 2 pinned runs would"},
-                 {":set arm.k2 5<Enter>]", "1 change would"}};
+                 {":set arm.k2 5<Enter>]", "1 change would"},
+                 {":note hard<Enter>", "notes, marks"},
+                 {"m", "marks"},
+                 {":limit force 2<Enter>", "panes"},
+                 {":panes 12<Enter>", "panes"},
+                 {":sweep arm.k2=4:6:2<Enter>", "sweep"}};
     for (EACH(c, cases)) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, c->keys);

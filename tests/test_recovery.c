@@ -268,3 +268,93 @@ TEST_IN_FOLDER(whatever_ends_it_the_file_is_whole)
                          formatted("rm -f %s/impactlab/.impactlab-*.part", test_folder)),
                      0);
 }
+
+// What a lab would write as a session, to be freed.
+static char *session_text(explorer *ex)
+{
+    fault f = {0};
+    WRITTEN(text,
+            assert_int_equal(explorer_write_session(&ex->model, &ex->view, stream, &f),
+                             STATUS_OK));
+    return text;
+}
+
+// Whatever was done, after each of 50 actions the recovery file brings all of it back:
+// what the next lab would write is what this one did.
+TEST_IN_FOLDER(everything_comes_back_at_fifty_instants)
+{
+    enum { INSTANTS = 50 };
+    static const char *const actions[] = {
+        ":set motor.voltage %d<Enter>",
+        ":note @0.%d something<Enter>",
+        ":mark 0.%d<Enter>",
+        ":limit force %d<Enter>",
+        "b:band force 0.%d<Enter>",
+        ":data bench.csv<Enter>",
+        ":data bench.csv@0.%d<Enter>",
+        ":residual force<Enter>",
+        ":phase force gap<Enter>",
+        ":trace force - %d*voltage<Enter>",
+        ":panes 1%d<Enter>",
+        ":zoom 0.1 0.%d<Enter>",
+        ":pin number %d<Enter>",
+        ":sweep arm.k2=4:6:3<Enter>",
+        ":metric contact_impulse_Ns<Enter>",
+        ":axis 0 %d 1<Enter>",
+        ":open compare/hybrid<Enter>",
+        "u",
+    };
+    enum { ACTIONS = sizeof actions / sizeof actions[0] };
+    put_file("bench.csv", "time[s],force[N]\n0,0\n0.2,0\n0.25,1\n0.3,0.5\n0.4,0.1\n");
+    random_generator random = seeded(3);
+    SCOPED(explorer_finish) explorer lab;
+    open_that_offers_nothing(&lab);
+    for (int i = 0; i < INSTANTS; i++) {
+        const char *doing = actions[(int)evenly(&random, 0, ACTIONS - 1e-9)];
+        if (lab.model.pinned.count == PINNED_RUNS) {
+            press(&lab, "Rd<Esc>");
+        }
+        press(&lab, formatted(doing, 2 + (int)evenly(&random, 0, 7)));
+        free(picture(&lab, 120, 40, GLYPHS_BRAILLE));
+        keep_at(&lab, i);
+        KEPT_TEXT(kept) = session_text(&lab);
+        if (!explorer_has_work(&lab.model, &lab.view)) {
+            continue;
+        }
+        KEPT_TEXT(file) = file_text(lab.recovery.path);
+        assert_string_equal(file, kept);
+
+        // the next lab stands where this one does
+        SCOPED(explorer_finish) explorer next;
+        open_changed(&next, "corrected/first-impact", "", HUGE_VAL);
+        put_file("left.session", file);
+        assert_true(
+            explorer_open_session(&next.model, &next.view, &next.input, "left.session"));
+        fail_if(next.input.message.warning, "after %s: %s", doing,
+                next.input.message.text);
+        free(picture(&next, 120, 40, GLYPHS_BRAILLE));
+        KEPT_TEXT(again) = session_text(&next);
+        assert_string_equal(again, kept);
+        assert_int_equal(next.model.measured.row_count, lab.model.measured.row_count);
+        assert_int_equal(next.model.sweep.count, lab.model.sweep.count);
+    }
+}
+
+// Data that were changed since are told.
+TEST_IN_FOLDER(changed_data_are_told)
+{
+    SCOPED(explorer_finish) explorer lab, next;
+    open_that_offers_nothing(&lab);
+    put_file("bench.csv", "time[s],force[N]\n0,0\n0.2,0\n0.25,1\n0.3,0.5\n");
+    press(&lab, ":data bench.csv<Enter>:session save a.session<Enter>");
+    put_file("bench.csv", "time[s],force[N]\n0,0\n0.2,0\n0.25,2\n0.3,0.5\n");
+    open_changed(&next, "corrected/first-impact", "", HUGE_VAL);
+    press_warns(&next, ":session open a.session<Enter>", "have changed");
+    assert_int_equal(next.model.measured.row_count, 4);
+
+    // and read again
+    put_file("bench.csv", "time[s],force[N]\n0,0\n0.2,0\n0.25,3\n0.3,0.5\n0.4,0\n");
+    press(&next, ":reload<Enter>");
+    assert_int_equal(next.model.measured.row_count, 5);
+    check_close(next.model.measured.rows[2].force, 3, 0);
+}

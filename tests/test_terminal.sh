@@ -168,7 +168,7 @@ offers() {
     await "1 change, 1 pinned run"
     mux send-keys q q
     await "status 0"
-    [ -z "$(ls -A "$folder/state/impactlab")" ] || fail "$1: the recovery file outlives an end that was asked for"
+    [ -z "$(find "$folder/state/impactlab" -name 'recovery*')" ] || fail "$1: the recovery file outlives an end that was asked for"
 }
 mux new-window "bash --noprofile --rcfile $folder/profile -i"
 await "ready>"

@@ -53,12 +53,11 @@ unsigned outside_files(void)
     return sources;
 }
 
-// Adds the digest of a plain file's content to `h`. False, with the reason in errno, if
-// the file cannot be read.
-static bool add_content(sha256 *h, const char *path)
+bool outside_file_digest(const char *path, char digest[SHA256_TEXT])
 {
-    char bytes[16384], digest[SHA256_TEXT];
+    char bytes[16384];
     sha256 content;
+    digest[0] = '\0';
     FILE *file = fopen(path, "rb");
     if (file == NULL) {
         return false;
@@ -74,7 +73,18 @@ static bool add_content(sha256 *h, const char *path)
     fclose(file);
     errno = reason;
     sha256_finish(&content, digest);
-    sha256_add_text(h, digest);
+    return whole;
+}
+
+// Adds the digest of a plain file's content to `h`. False, with the reason in errno, if
+// the file cannot be read.
+static bool add_content(sha256 *h, const char *path)
+{
+    char digest[SHA256_TEXT];
+    const bool whole = outside_file_digest(path, digest);
+    if (digest[0] != '\0') {
+        sha256_add_text(h, digest);
+    }
     return whole;
 }
 

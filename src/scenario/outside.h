@@ -39,6 +39,9 @@ bool outside_is_told(const outside_source *source, const parameters *p);
 // parameters name, be it read in this run or not.
 status outside_keep(const parameters *p, fault *f);
 
+// The digest of a file's content. False, with the reason in errno, if it cannot be read.
+bool outside_file_digest(const char *path, char digest[SHA256_TEXT]);
+
 // The digest of what the parameter's value names, which can be told. STATUS_CANNOT_READ
 // if a file cannot be read.
 status outside_digest(const outside_source *source, const parameters *p,

@@ -35,7 +35,7 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
 
     // the quantity
     copy_trimmed(text, sign, key, sizeof key);
-    *c = (solve_condition){.quantity = summary_find(key), .below = *sign == '<'};
+    *c = (solve_condition){.quantity = summary_find_begun(key), .below = *sign == '<'};
     if (c->quantity < 0) {
         const char *near = summary_suggest(key);
         FAULT_IF(near != NULL, f, STATUS_BAD_ARGUMENT,

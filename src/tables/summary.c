@@ -16,6 +16,19 @@ int summary_find(const char *key)
     return name_find(summary_table, sizeof *summary_table, summary_count, key);
 }
 
+int summary_find_begun(const char *text)
+{
+    const int named = summary_find(text);
+    const size_t length = strlen(text);
+    for (int i = 0; named < 0 && length > 0 && i < summary_count; i++) {
+        const char *key = summary_table[i].key;
+        if (strncmp(key, text, length) == 0 && key[length] == '_') {
+            return i;
+        }
+    }
+    return named;
+}
+
 int summary_index(const char *key)
 {
     int index = summary_find(key);

@@ -127,6 +127,8 @@ enum {
 
 // Index of a key in the table, or -1.
 int summary_find(const char *key);
+// The same of a key's beginning up to a "_", as people type it ("peak"): the first.
+int summary_find_begun(const char *text);
 
 // Index of a key that is known to be there: an unknown one fails an assertion.
 int summary_index(const char *key);

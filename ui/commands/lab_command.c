@@ -2,6 +2,7 @@
 #include "ui/commands/command.h"
 
 #include <errno.h>
+#include <glib.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -281,6 +282,34 @@ static void hand_out_copy(explorer_input *input)
     }
 }
 
+// Lets the user edit a file, if the lab asks for that, and opens what became of it.
+static void run_editor(live_lab *lab)
+{
+    explorer *ex = lab->ex;
+    char *path = ex->input.edits;
+    if (path[0] == '\0') {
+        return;
+    }
+    const char *editor = getenv("VISUAL");
+    if (editor == NULL || editor[0] == '\0') {
+        editor = getenv("EDITOR");
+    }
+    if (editor == NULL || editor[0] == '\0') {
+        editor = "vi";
+    }
+    g_autofree char *quoted = g_shell_quote(path);
+    g_autofree char *line = g_strconcat(editor, " ", quoted, NULL);
+    if (terminal_run(line) != 0) {
+        act_warn(&ex->input, "'%.100s' did not end well: the scenario stays", editor);
+    } else {
+        g_autofree char *open = g_strconcat("open ", path, NULL);
+        explorer_carry_out(ex, open);
+    }
+    path[0] = '\0';
+    lab->outdated = ex->view.looks.redraw = true;
+    lab->advanced_to = now_in_seconds();
+}
+
 // Returns whether the user ended it.
 static bool run_on_terminal(explorer *ex)
 {
@@ -301,6 +330,7 @@ static bool run_on_terminal(explorer *ex)
         follow_time(&lab, now);
         take_all_input(&lab, in);
         hand_out_copy(&ex->input);
+        run_editor(&lab);
     }
 
     screen_finish(&lab.screen);
@@ -342,6 +372,7 @@ static void prepare_looks(explorer *ex, const arguments *a)
         l->theme = COLOURS_LIGHT;
     }
     explorer_load_settings(&ex->model, &ex->view, &ex->input);
+    explorer_remember_looks(&ex->model, &ex->view);
     if (a->operand_count == 0) {
         explorer_welcome(ex);
     }
@@ -419,6 +450,8 @@ static int run_live(explorer *ex)
     }
 
     // while a recovered session is offered nothing is played
+    explorer_keep_lines(ex);
+    ex->input.has_terminal = true;
     ex->view.playback.playing = !recovery_begin(ex);
     recovery_end(ex, run_on_terminal(ex));
     terminal_close();

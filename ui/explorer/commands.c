@@ -50,6 +50,23 @@ static bool find_command(explorer_input *input, const char *line, int *index)
                       near.best);
 }
 
+// Puts the home folder in the place of ~ where a command's argument ends in a file that
+// begins so. False if that has no room.
+static bool expand_home(char text[LINE_TEXT], int argument, const char *kind)
+{
+    const char *home = getenv("HOME");
+    const bool takes_file =
+        strstr(kind, "FILE") != NULL || strstr(kind, "NAME|+1") != NULL;
+    char *at = strstr(text + argument, "~/");
+    if (!takes_file || home == NULL || at == NULL || (at > text && at[-1] != ' ')) {
+        return true;
+    }
+    char rest[LINE_TEXT];
+    snprintf(rest, sizeof rest, "%s", at + 1);
+    const size_t room = LINE_TEXT - (size_t)(at - text);
+    return snprintf(at, room, "%s%s", home, rest) < (int)room;
+}
+
 bool explorer_execute(explorer_model *model, explorer_view *view, explorer_input *input,
                       const char *line)
 {
@@ -75,6 +92,9 @@ bool explorer_execute(explorer_model *model, explorer_view *view, explorer_input
     size_t length = strcspn(text, " \t");
     length += strspn(text + length, " \t");
     input->message.at = 0;
+    if (!expand_home(text, (int)length, explorer_command_table[index].argument)) {
+        return act_refuse(input, "the line is too long with the whole path");
+    }
     const bool done = call_action(model, view, input, index, text + length);
 
     // what is wrong with the argument is said of the line
@@ -222,6 +242,7 @@ static bool carry_out_look(explorer_model *model, explorer_view *view,
 {
     if (begins_with_one(line,
                         " panes axis zoom mark trace phase spectrum signal lanes limit "
+                        "data sweep metric # "
                         "residual band note ")) {
         return explorer_execute(model, view, input, line);
     }
@@ -325,6 +346,10 @@ void explorer_load_settings(explorer_model *model, explorer_view *view,
         fclose(stream);
     }
 
+    if (view->panes.chosen) {
+        explorer_shown_panes(view, view->kept_panes);
+    }
+
     // the first fault, and the number of further ones
     view->settings_broken = faults > 0;
     input->message = first;
@@ -370,18 +395,12 @@ static void write_settings(const explorer_view *view, FILE *stream)
 
     // panes that the user did not choose are those that suit the scenario
     if (view->panes.chosen) {
-        fprintf(stream, "panes ");
-        for (int i = 0; i < PANES_OF_TABLE; i++) {
-            if (view->panes.pane[i].shown) {
-                fprintf(stream, "%d", i + 1);
-            }
-        }
-        fprintf(stream, "\n");
+        fprintf(stream, "panes %s\n", view->kept_panes);
     }
     write_axes_and_keys(view, stream);
 }
 
-bool act_remember(const explorer_view *view, explorer_input *input)
+bool act_remember(explorer_view *view, explorer_input *input)
 {
     char path[1024];
     whole_file file;
@@ -398,6 +417,7 @@ bool act_remember(const explorer_view *view, explorer_input *input)
     if (!act_succeeded(input, whole_file_open(&file, path, &input->fault))) {
         return false;
     }
+    explorer_shown_panes(view, view->kept_panes);
     write_settings(view, file.stream);
     return act_succeeded(input, whole_file_commit(&file, &input->fault)) &&
            act_tell(input, "settings kept in %s", path);

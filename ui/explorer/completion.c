@@ -207,6 +207,7 @@ static void put_word(prompt *p, const char *word, const char *after)
     const size_t at = (size_t)p->stem_at;
     p->replaces = false;
     snprintf(p->text + at, sizeof p->text - at, "%s%s", word, after);
+    p->cursor = (int)strlen(p->text);
 }
 
 // Cuts the first of some words to what all of them begin with.
@@ -257,8 +258,9 @@ static int word_begins(const char *text)
     return begin;
 }
 
-bool complete_prompt(explorer_model *model, const explorer_view *view,
-                     explorer_input *input)
+// Completes the word that ends the text.
+static bool complete_end(explorer_model *model, const explorer_view *view,
+                         explorer_input *input)
 {
     static char fitting[FITTING][CANDIDATE];
     prompt *p = &input->prompt;
@@ -278,4 +280,18 @@ bool complete_prompt(explorer_model *model, const explorer_view *view,
     }
     p->cycling = count > 1;
     return count == 0 || complete_common(input, fitting, count);
+}
+
+bool complete_prompt(explorer_model *model, const explorer_view *view,
+                     explorer_input *input)
+{
+    // what stands behind the cursor stays there
+    prompt *p = &input->prompt;
+    char behind[LINE_TEXT];
+    snprintf(behind, sizeof behind, "%s", p->text + p->cursor);
+    p->text[p->cursor] = '\0';
+    const bool done = complete_end(model, view, input);
+    p->cursor = (int)strlen(p->text);
+    text_add(p->text, sizeof p->text, "%s", behind);
+    return done;
 }

@@ -15,7 +15,16 @@ status explorer_init(explorer *ex, scenario *s, double patience, fault *f)
     }
     TRY(state_init(&ex->model, &ex->view, s, patience, f));
     act_tell_failed_run(&ex->model, &ex->input);
+    explorer_remember_looks(&ex->model, &ex->view);
     return STATUS_OK;
+}
+
+void explorer_keep_lines(explorer *ex)
+{
+    char path[1024];
+    if (user_file(USER_STATE, "history", path, sizeof path, true)) {
+        prompt_use_history(&ex->input.prompt, path);
+    }
 }
 
 void explorer_finish(explorer *ex)

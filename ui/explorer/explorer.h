@@ -53,6 +53,9 @@ typedef struct explorer {
 status explorer_init(explorer *ex, scenario *s, double patience, fault *f);
 void explorer_finish(explorer *ex);
 
+// Takes the lines that were entered in earlier visits, and keeps those of this one, too.
+void explorer_keep_lines(explorer *ex);
+
 // Takes in the rows computed since the last call. True if there is something new to draw.
 bool explorer_follow(explorer *ex);
 
@@ -136,6 +139,15 @@ bool explorer_save_session(explorer_model *model, const explorer_view *view,
 // STATUS_NO_MEMORY, or STATUS_CANNOT_WRITE for a pane that no line can say.
 status explorer_write_session(const explorer_model *model, const explorer_view *view,
                               FILE *stream, fault *f);
+
+// The panes of the table that are shown, as their numbers.
+void explorer_shown_panes(const explorer_view *view, char text[PANES + 1]);
+
+// What stands on the screen counts as saved from now on: notes, the mark, limits, panes,
+// measured data, a sweep.
+void explorer_remember_looks(explorer_model *model, const explorer_view *view);
+// Whether there is anything that a recovery file would bring back.
+bool explorer_has_work(const explorer_model *model, const explorer_view *view);
 
 // --- recovery --------------------------------------------------------------------------
 

@@ -114,16 +114,24 @@ static bool has_file(const char *name)
     return exists(name) || exists(recipe);
 }
 
-// Asks for a name and proposes the first one of the run that no file has.
+// The first name of the run that no file has.
+static void free_file_name(const explorer_model *model, char name[LINE_TEXT / 2],
+                           const char *ending)
+{
+    char stem[100];
+    name_of_run(&model->session, stem, sizeof stem);
+    snprintf(name, LINE_TEXT / 2, "%s%s", stem, ending);
+    for (int i = 2; has_file(name) && i < 10000; i++) {
+        snprintf(name, LINE_TEXT / 2, "%s-%d%s", stem, i, ending);
+    }
+}
+
+// Asks for a name and proposes that one.
 static void propose_file_name(const explorer_model *model, explorer_input *input,
                               const char *command, const char *ending)
 {
-    char stem[100], name[LINE_TEXT / 2];
-    name_of_run(&model->session, stem, sizeof stem);
-    snprintf(name, sizeof name, "%s%s", stem, ending);
-    for (int i = 2; has_file(name) && i < 10000; i++) {
-        snprintf(name, sizeof name, "%s-%d%s", stem, i, ending);
-    }
+    char name[LINE_TEXT / 2];
+    free_file_name(model, name, ending);
     prompt_open(&input->prompt, name, "%s ", command);
 }
 
@@ -350,6 +358,37 @@ bool act_save_now(explorer_model *model, explorer_view *view, explorer_input *in
         return act_refuse(input, "save! takes the file that it is to replace");
     }
     return save_over(model, view, input, argument, true);
+}
+
+// --- the editor ------------------------------------------------------------------------
+
+bool act_editor(const explorer_model *model, explorer_input *input)
+{
+    const session *s = &model->session;
+    const scenario *base = &s->base;
+    if (!input->has_terminal) {
+        return act_refuse(input, "an editor needs a terminal");
+    }
+
+    // a file of the user's itself, else this run as a scenario in the present folder
+    const bool own = base->file != NULL && strcmp(base->name, base->file) == 0 &&
+                     access(base->file, W_OK) == 0;
+    if (own) {
+        snprintf(input->edits, sizeof input->edits, "%s", base->file);
+        return true;
+    }
+    char name[LINE_TEXT / 2];
+    whole_file file;
+    free_file_name(model, name, ".yaml");
+    if (!act_succeeded(input, whole_file_open(&file, name, &input->fault))) {
+        return false;
+    }
+    scenario_write(file.stream, &s->effective);
+    if (!act_succeeded(input, whole_file_commit(&file, &input->fault))) {
+        return false;
+    }
+    snprintf(input->edits, sizeof input->edits, "%s", name);
+    return true;
 }
 
 // The arm in space at the cursor's instant.

@@ -71,7 +71,7 @@ static void enter_prompt(explorer *ex)
     }
 
     // the first line that fails is kept for the end
-    snprintf(p->history, sizeof p->history, "%s", line);
+    prompt_remember(p, line);
     if (!explorer_carry_out(ex, line) && ex->first_failure[0] == '\0') {
         snprintf(ex->first_failure, sizeof ex->first_failure, "%s",
                  ex->input.message.text);
@@ -87,7 +87,7 @@ static bool leaves(int key)
 // Whether a key moved in the palette that the prompt shows: Up leaves it at its top.
 static bool key_in_palette(explorer_view *view, const explorer_input *input, int key)
 {
-    if (!palette_shows(&input->prompt)) {
+    if (!palette_shows(&input->prompt) || input->prompt.recalled > 0) {
         return false;
     }
     if (key == KEY_CODE_DOWN || key == ('n' & 0x1f)) {
@@ -99,6 +99,17 @@ static bool key_in_palette(explorer_view *view, const explorer_input *input, int
         return true;
     }
     return false;
+}
+
+// Gives a key to the line; what has no room is said.
+static void type_in_prompt(explorer *ex, int key)
+{
+    prompt *p = &ex->input.prompt;
+    p->recalled = 0;
+    if (!prompt_type(p, key)) {
+        act_warn(&ex->input, "a line has at most %d bytes: the rest is not taken",
+                 LINE_TEXT - 1);
+    }
 }
 
 static void key_in_prompt(explorer *ex, int key)
@@ -123,11 +134,11 @@ static void key_in_prompt(explorer *ex, int key)
         act_palette(&ex->view, &ex->input, words);
     } else if (key == KEY_CODE_TAB) {
         complete_prompt(&ex->model, &ex->view, &ex->input);
-    } else if (key == KEY_CODE_UP) {
-        prompt_open(p, NULL, "%s", p->history);
+    } else if (!p->searches && (key == KEY_CODE_UP || key == KEY_CODE_DOWN)) {
+        prompt_recall(p, key == KEY_CODE_UP ? -1 : 1);
     } else {
         // other words, another list
-        prompt_type(p, key);
+        type_in_prompt(ex, key);
         if (p->searches) {
             ex->view.palette.selected = 0;
         } else {

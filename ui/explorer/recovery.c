@@ -4,6 +4,7 @@
 // It holds what `:session save` writes, and is locked as long as its lab lives.
 #include <dirent.h>
 #include <fcntl.h>
+#include <glib.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,8 +75,7 @@ static void begin_writing(explorer *ex)
     text_stream text;
     sigset_t before;
     r->changed = false;
-    if (ex->model.session.input_count + ex->model.pinned.count + ex->model.note_count ==
-        0) {
+    if (!explorer_has_work(&ex->model, &ex->view)) {
         return;
     }
 
@@ -228,6 +228,8 @@ bool recovery_answer(explorer *ex, int key)
         r->lock = r->left_lock;
         ex->model.session_path[0] = '\0';
         ex->model.saved_version = ex->model.kept_pins = 0;
+        g_free(ex->model.saved_looks);
+        ex->model.saved_looks = NULL;
         return true;
     }
     if (key == 'n' && rename(path, kept) == 0) {

@@ -1,4 +1,5 @@
 // Sessions: what one did, kept in a file and gone on with.
+#include <glib.h>
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
@@ -73,8 +74,7 @@ static void add_pane(const explorer_model *model, const explorer_view *view,
     }
 }
 
-// The panes of the table that are shown, as their numbers.
-static void shown_panes(const explorer_view *view, char text[PANES + 1])
+void explorer_shown_panes(const explorer_view *view, char text[PANES + 1])
 {
     text[0] = '\0';
     for (int i = 0; i < PANES_OF_TABLE; i++) {
@@ -84,14 +84,48 @@ static void shown_panes(const explorer_view *view, char text[PANES + 1])
     }
 }
 
+// Measured data, before the panes that show them: their file with its digest, and by how
+// much they are shifted.
+static void add_data(const explorer_model *model, session_file *file)
+{
+    if (model->measured.row_count == 0) {
+        return;
+    }
+    g_autofree char *path = g_canonicalize_filename(model->measured_file, NULL);
+    add_line(file, "# data %s", model->measured_digest);
+    if (model->measured_aligned) {
+        add_line(file, "data %s", path);
+    } else {
+        add_line(file, "data %s@%.17g", path, model->measured_shift);
+    }
+}
+
+// A sweep by its definition, and its quantity.
+static void add_sweep(const explorer_model *model, session_file *file)
+{
+    const lab_sweep *sweep = &model->sweep;
+    if (!lab_sweep_is_on(sweep)) {
+        return;
+    }
+    const char *path = sweep_axis_parameter(&sweep->axis)->path;
+    if (lab_sweep_is_map(sweep)) {
+        add_line(file, "sweep %s=%s %s=%s", path, sweep->axis.text,
+                 sweep_axis_parameter(&sweep->second)->path, sweep->second.text);
+    } else {
+        add_line(file, "sweep %s=%s", path, sweep->axis.text);
+    }
+    add_line(file, "metric %s", summary_table[sweep->metric].key);
+}
+
 // How the runs are looked at, as the lines that give it again.
 static void add_looks(const explorer_model *model, const explorer_view *view,
                       session_file *file)
 {
+    add_data(model, file);
     add_line(file, "lanes %s", look_word(&view->looks, look_choice_of("lanes")));
     if (view->panes.chosen) {
         char shown[PANES + 1];
-        shown_panes(view, shown);
+        explorer_shown_panes(view, shown);
         add_line(file, "panes %s", shown);
     }
 
@@ -125,6 +159,49 @@ static void add_looks(const explorer_model *model, const explorer_view *view,
     if (view->mark.set) {
         add_line(file, "mark %.17g", view->mark.time);
     }
+    add_sweep(model, file);
+}
+
+// What would be lost of how the runs are looked at, as text: of its lines those that
+// somebody made on purpose.
+static char *looks_worth_keeping(const explorer_model *model, const explorer_view *view)
+{
+    static session_file file;
+    GString *text = g_string_new(NULL);
+    file = (session_file){.line_count = 0};
+    add_looks(model, view, &file);
+    for (int i = 0; i < file.line_count; i++) {
+        const char *line = file.lines[i];
+        const bool remembered = g_str_has_prefix(line, "panes ") &&
+                                strcmp(line + strlen("panes "), view->kept_panes) == 0;
+        if (!remembered && !g_str_has_prefix(line, "lanes ") &&
+            !g_str_has_prefix(line, "zoom ") && !g_str_has_prefix(line, "signal ") &&
+            !g_str_has_prefix(line, "axis ")) {
+            g_string_append(text, line);
+            g_string_append_c(text, '\n');
+        }
+    }
+    session_file_finish(&file);
+    return g_string_free(text, FALSE);
+}
+
+void explorer_remember_looks(explorer_model *model, const explorer_view *view)
+{
+    g_free(model->saved_looks);
+    model->saved_looks = looks_worth_keeping(model, view);
+}
+
+// Whether no file has how the runs are looked at.
+static bool looks_are_unsaved(const explorer_model *model, const explorer_view *view)
+{
+    g_autofree char *now = looks_worth_keeping(model, view);
+    return g_strcmp0(now, model->saved_looks) != 0;
+}
+
+bool explorer_has_work(const explorer_model *model, const explorer_view *view)
+{
+    return model->session.input_count + model->pinned.count > 0 ||
+           looks_are_unsaved(model, view);
 }
 
 // A line that could not be typed could not be carried out again.
@@ -174,8 +251,10 @@ static status write_session(const explorer_model *model, const explorer_view *vi
 }
 
 // What the session's file holds is saved.
-static void remember_saved(explorer_model *model, const char *path)
+static void remember_saved(explorer_model *model, const explorer_view *view,
+                           const char *path)
 {
+    explorer_remember_looks(model, view);
     snprintf(model->session_path, sizeof model->session_path, "%s", path);
     model->saved_version = model_run_id(model);
     model->kept_pins = model->pinned.pinned;
@@ -193,7 +272,7 @@ bool explorer_save_session(explorer_model *model, const explorer_view *view,
         !act_succeeded(input, write_session(model, view, path, &input->fault))) {
         return false;
     }
-    remember_saved(model, path);
+    remember_saved(model, view, path);
     if (strchr(path, '\'') != NULL) {
         return act_tell(input, "kept in %.200s", path);
     }
@@ -225,6 +304,29 @@ static status pin_all(explorer_model *model, const session_file *file, fault *f)
     return STATUS_OK;
 }
 
+// Whether a file has lines that are carried out only beside a complete run.
+static bool needs_whole_run(const session_file *file)
+{
+    bool needs = false;
+    for (int i = 0; i < file->line_count; i++) {
+        needs = needs || g_str_has_prefix(file->lines[i], "data ") ||
+                g_str_has_prefix(file->lines[i], "sweep ");
+    }
+    return needs;
+}
+
+// Whether measured data are others than they were when a file was written.
+static bool data_have_changed(const explorer_model *model, const session_file *file)
+{
+    bool changed = false;
+    for (int i = 0; i < file->line_count; i++) {
+        const char *line = file->lines[i];
+        changed = changed || (g_str_has_prefix(line, "# data ") &&
+                              !g_str_has_suffix(line, model->measured_digest));
+    }
+    return changed;
+}
+
 // Takes what a file says, all of it or nothing.
 static bool take_session(explorer_model *model, explorer_view *view,
                          explorer_input *input, const session_file *file)
@@ -238,10 +340,13 @@ static bool take_session(explorer_model *model, explorer_view *view,
     }
     session fresh;
     fault *f = &input->fault;
-    if (!act_succeeded(input, session_reopen(&fresh, &file->runs[0].from,
-                                             model->session.patience, f))) {
+    const double patience = model->session.patience;
+    if (!act_succeeded(input,
+                       session_reopen(&fresh, &file->runs[0].from,
+                                      needs_whole_run(file) ? HUGE_VAL : patience, f))) {
         return false;
     }
+    fresh.patience = patience;
     status code = pin_all(model, file, f);
 
     // the baseline is the file's, else the one that was
@@ -316,9 +421,75 @@ bool explorer_resume_session(explorer_model *model, explorer_view *view,
             failure = (message_line){
                 .text = "a file that a run reads has changed since it was kept"};
         }
-        remember_saved(model, path);
+        if (failure.text[0] == '\0' && data_have_changed(model, &file)) {
+            failure = (message_line){
+                .text = "the measured data have changed since they were kept"};
+        }
+        remember_saved(model, view, path);
         done = tell_session(model, input, path, &failure);
     }
     session_file_finish(&file);
     return done;
+}
+
+// --- leaving ---------------------------------------------------------------------------
+
+// The number of changes that no file has, of all scenarios visited.
+static int unsaved_changes(const explorer_model *model)
+{
+    int changes = 0;
+    if (model->saved_version != model_run_id(model)) {
+        changes = model->session.input_count;
+    }
+    for (int i = 0; i < model->visit_count; i++) {
+        changes += model->visits[i].from.input_count;
+    }
+    return changes;
+}
+
+// The number of pinned runs that no file has.
+static int unsaved_pins(const explorer_model *model)
+{
+    if (model->kept_pins == model->pinned.pinned) {
+        return 0;
+    }
+    return model->pinned.count;
+}
+
+bool act_quit(const explorer_model *model, const explorer_view *view,
+              explorer_input *input)
+{
+    // work is lost only if quitting is requested twice
+    const int changes = unsaved_changes(model), pins = unsaved_pins(model);
+    const bool looked = looks_are_unsaved(model, view);
+    if ((changes + pins == 0 && !looked) || input->asked_to_quit) {
+        return act_quit_now(input);
+    }
+    input->asked_to_quit = true;
+
+    // what would be lost
+    char lost[LINE_TEXT] = "";
+    if (changes > 0) {
+        text_add(lost, sizeof lost, "%d change%s", changes, changes == 1 ? "" : "s");
+    }
+    if (pins > 0) {
+        text_add(lost, sizeof lost, "%s%d pinned run%s", changes > 0 ? " and " : "", pins,
+                 pins == 1 ? "" : "s");
+    }
+    if (looked) {
+        text_add(lost, sizeof lost, "%snotes, marks, panes, data or a sweep",
+                 changes + pins > 0 ? ", and " : "");
+    }
+    return act_warn(input,
+                    "%s would be lost: q leaves all the same, s keeps all, Esc stays",
+                    lost);
+}
+
+bool act_interrupt(explorer_model *model, const explorer_view *view,
+                   explorer_input *input)
+{
+    if (model->session.computing != NULL) {
+        return act_stop(model, input);
+    }
+    return act_quit(model, view, input);
 }

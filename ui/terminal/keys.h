@@ -19,7 +19,13 @@
     X(SHIFT_LEFT, "S-Left", KEY_SLEFT)                                                   \
     X(SHIFT_RIGHT, "S-Right", KEY_SRIGHT)                                                \
     X(SHIFT_UP, "S-Up", KEY_SR)                                                          \
-    X(SHIFT_DOWN, "S-Down", KEY_SF)
+    X(SHIFT_DOWN, "S-Down", KEY_SF)                                                      \
+    X(ALT_B, "M-b", NO_CURSES_KEY)                                                       \
+    X(ALT_D, "M-d", NO_CURSES_KEY)                                                       \
+    X(ALT_F, "M-f", NO_CURSES_KEY)                                                       \
+    X(ALT_BACKSPACE, "M-Backspace", NO_CURSES_KEY)
+
+#define NO_CURSES_KEY (-1) // of keys that come as an escape and a character
 
 // The code of a character is its Unicode number.
 enum key_code {

@@ -38,6 +38,10 @@ void terminal_close(void);
 // a signal handler.
 void terminal_give_back(void);
 
+// Runs a line of the shell with the terminal, and takes that over again; returns what
+// system() does.
+int terminal_run(const char *line);
+
 void terminal_size(int *width, int *height);
 
 // Waits for input: at most `seconds`, without limit if negative.

@@ -3,6 +3,7 @@
 #include "ui/terminal/terminal_state.h"
 
 #include <poll.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -29,6 +30,29 @@ static int key_of_curses(int key)
         }
     }
     return 0;
+}
+
+// The key of an escape and a character that came at once, 0 for none: Alt and that key.
+static int key_of_alt(wint_t key, int kind)
+{
+    const bool backspace = (kind == KEY_CODE_YES && key == KEY_BACKSPACE) ||
+                           (kind == OK && (key == 127 || key == '\b'));
+    if (backspace) {
+        return KEY_CODE_ALT_BACKSPACE;
+    }
+    if (kind != OK) {
+        return 0;
+    }
+    switch (key) {
+    case 'b':
+        return KEY_CODE_ALT_B;
+    case 'd':
+        return KEY_CODE_ALT_D;
+    case 'f':
+        return KEY_CODE_ALT_F;
+    default:
+        return 0;
+    }
 }
 
 // Reads an answer of the terminal; true if the screen should be redrawn.
@@ -134,6 +158,10 @@ static terminal_input pending_input(void)
         // next one
         if (tty.sequence.state != SEQUENCE_NONE) {
             const bool taken = take_sequence(key, kind, &in);
+            const int alt = key_of_alt(key, kind);
+            if (!taken && in.kind != TERMINAL_NONE && alt != 0) {
+                return key_input(alt);
+            }
             if (!taken && in.kind != TERMINAL_NONE) {
                 put_back(key, kind);
             }
@@ -166,17 +194,38 @@ static terminal_input pending_input(void)
     return in;
 }
 
-// Gives the terminal back, mouse included, stops until the shell continues the program,
-// and takes the terminal over again.
-static void suspend(void)
+// Gives the terminal back, mouse included, and takes it over again.
+static void give_back(void)
 {
-    struct sigaction ours, plain = {.sa_handler = SIG_DFL};
     terminal_mouse(false);
     terminal_bracket_pastes(false);
     terminal_remove_pictures();
     erase();
     refresh();
     endwin();
+}
+
+static void take_over(void)
+{
+    clearok(stdscr, TRUE);
+    refresh();
+    curs_set(0);
+    terminal_bracket_pastes(true);
+}
+
+int terminal_run(const char *line)
+{
+    give_back();
+    const int result = system(line);
+    take_over();
+    return result;
+}
+
+// Stops until the shell continues the program.
+static void suspend(void)
+{
+    struct sigaction ours, plain = {.sa_handler = SIG_DFL};
+    give_back();
 
     // nothing stops a program that no shell could wake
     sigaction(SIGTSTP, &plain, &ours);
@@ -184,10 +233,7 @@ static void suspend(void)
     sigaction(SIGTSTP, &ours, NULL);
 
     // what is shown is the shell's
-    clearok(stdscr, TRUE);
-    refresh();
-    curs_set(0);
-    terminal_bracket_pastes(true);
+    take_over();
 }
 
 // Asks for the terminal's size, and for that of a cell if it was known: it may change

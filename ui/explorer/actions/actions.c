@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/units.h"
+
 bool act_clear_message(explorer_input *input)
 {
     input->message.text[0] = '\0';
@@ -46,6 +48,37 @@ bool act_read_number(explorer_input *input, const char *text, double *value)
         return act_refuse(input, "'%s' is no number", text);
     }
     return true;
+}
+
+bool act_read_quantity(explorer_input *input, const char *text, const char *unit,
+                       double *value)
+{
+    const char *rest;
+    double factor;
+    if (!decimal_read(text, value, &rest)) {
+        return act_refuse(input, "'%.60s' is no number", text);
+    }
+    if (*rest != '\0' && !unit_factor(rest, unit, &factor)) {
+        return act_refuse(input, "'%.60s' is in '%.20s', expected %s", text, rest, unit);
+    }
+    if (*rest != '\0') {
+        *value *= factor;
+    }
+    return true;
+}
+
+const char *act_convert(int parameter, const char *value, char text[NUMBER_TEXT])
+{
+    const parameter_info *info = &parameter_table[parameter];
+    const char *rest;
+    double number, factor;
+    if (info->type != PARAMETER_REAL || !decimal_read(value, &number, &rest) ||
+        *rest == '\0' || strcmp(rest, info->unit) == 0 ||
+        !unit_factor(rest, info->unit, &factor)) {
+        return value;
+    }
+    number_format(text, number * factor);
+    return text;
 }
 
 bool act_read_number_or(explorer_input *input, const char *text, const char *word,
@@ -198,8 +231,10 @@ bool act_change_parameter(explorer_model *model, explorer_input *input, int para
 {
     assert(parameter >= 0 && parameter < parameter_count);
     session *s = &model->session;
+    char converted[NUMBER_TEXT];
+    const char *value = act_convert(parameter, text, converted);
     session_forget_ghost(s);
-    return act_succeeded(input, session_change(s, parameter, text, &input->fault)) &&
+    return act_succeeded(input, session_change(s, parameter, value, &input->fault)) &&
            act_tell_change(model, input);
 }
 

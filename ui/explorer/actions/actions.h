@@ -4,6 +4,7 @@
 #pragma once
 
 #include "src/base/fault.h"
+#include "src/base/numbers.h"
 #include "ui/explorer/state/command_list.h"
 #include "ui/explorer/state/state.h"
 
@@ -69,6 +70,7 @@ bool act_metric(explorer_model *model, explorer_input *input, const char *argume
 
 // measured data (measured_actions.c)
 bool act_data(explorer_model *model, explorer_input *input, const char *argument);
+bool act_reload(explorer_model *model, explorer_input *input);
 bool act_identify(explorer_model *model, explorer_input *input, const char *argument);
 
 // axes (axis_actions.c)
@@ -125,8 +127,6 @@ bool act_bending(explorer_view *view, explorer_input *input, const char *argumen
 bool act_mouse(explorer_view *view, explorer_input *input, const char *argument);
 bool act_redraw(explorer_view *view);
 bool act_help(explorer_view *view);
-bool act_interrupt(explorer_model *model, explorer_input *input);
-bool act_quit(const explorer_model *model, explorer_input *input);
 bool act_quit_now(explorer_input *input);
 
 // scenarios and lessons (scenario_actions.c)
@@ -145,14 +145,19 @@ bool act_save(explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
 bool act_save_now(explorer_model *model, explorer_view *view, explorer_input *input,
                   const char *argument);
+bool act_editor(const explorer_model *model, explorer_input *input);
 bool act_copy(explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
 bool act_scene(const explorer_model *model, explorer_input *input, const char *argument);
 bool act_session(explorer_model *model, explorer_view *view, explorer_input *input,
                  const char *argument);
+bool act_interrupt(explorer_model *model, const explorer_view *view,
+                   explorer_input *input);
+bool act_quit(const explorer_model *model, const explorer_view *view,
+              explorer_input *input);
 bool act_key(explorer_view *view, explorer_input *input, const char *argument);
 bool act_unkey(explorer_view *view, explorer_input *input, const char *argument);
-bool act_remember(const explorer_view *view, explorer_input *input);
+bool act_remember(explorer_view *view, explorer_input *input);
 
 // --- what is said ----------------------------------------------------------------------
 
@@ -172,8 +177,17 @@ bool act_succeeded(explorer_input *input, status code);
 // Reads a finite number.
 bool act_read_number(explorer_input *input, const char *text, double *value);
 
-// The same for an argument that may be a word instead, such as "" or "off": then the
-// value stays.
+// Reads a number that may be followed by its unit or another of the same quantity, and
+// gives it in that unit.
+bool act_read_quantity(explorer_input *input, const char *text, const char *unit,
+                       double *value);
+
+// A value of a parameter with another unit of its quantity ("5 deg") as one in its own.
+// Returns text, or the value as it is.
+const char *act_convert(int parameter, const char *value, char text[NUMBER_TEXT]);
+
+// The same as act_read_number for an argument that may be a word instead, such as "" or
+// "off": then the value stays.
 bool act_read_number_or(explorer_input *input, const char *text, const char *word,
                         double *value);
 

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "src/run/trace.h"
 #include "src/study/identify.h"
@@ -31,7 +32,57 @@ static status read_measured(explorer_model *model, const char *path, fault *f)
     model->measured_shift = 0;
     model->measured_id++;
     snprintf(model->measured_file, sizeof model->measured_file, "%s", path);
+    outside_file_digest(path, model->measured_digest);
     return STATUS_OK;
+}
+
+// Lets the run play the command of the measured data, on their clock: from the start, as
+// changes of its own.
+static status play_measured(explorer_model *model, fault *f)
+{
+    session *s = &model->session;
+    parameters p = s->effective.parameters;
+    const int plays[] = {PARAMETER_INDEX(control.playback_file),
+                         PARAMETER_INDEX(control.playback_column),
+                         PARAMETER_INDEX(control.playback_shift),
+                         PARAMETER_INDEX(control.law)};
+    const double shift = -model->measured.rows[0].time;
+    TRY(parameter_set_text(&p, plays[0], model->measured_file, f));
+    TRY(parameter_set_text(&p, plays[1], "command", f));
+    TRY(parameter_set_number(&p, plays[2], shift, f));
+    TRY(parameter_set_number(&p, plays[3], LAW_PLAYBACK, f));
+    for (size_t i = 0; i < sizeof plays / sizeof plays[0]; i++) {
+        TRY(session_change_from_start(s, &p, plays[i], f));
+    }
+    model_lay_data(model, shift);
+    return STATUS_OK;
+}
+
+// Cuts the word off the end of a text that asks for the command to be played.
+static bool cut_play(char *path)
+{
+    char *word = strrchr(path, ' ');
+    const bool plays = word != NULL && strcmp(word, " play") == 0;
+    if (plays) {
+        *word = '\0';
+    }
+    return plays;
+}
+
+bool act_reload(explorer_model *model, explorer_input *input)
+{
+    if (model->measured.row_count == 0) {
+        return act_refuse(input, "there are no measured data: :data FILE.csv");
+    }
+    char path[LINE_TEXT];
+    snprintf(path, sizeof path, "%s", model->measured_file);
+    const double shift = model->measured_aligned ? (double)NAN : model->measured_shift;
+    if (!act_succeeded(input, read_measured(model, path, &input->fault))) {
+        return false;
+    }
+    model_lay_data(model, shift);
+    return act_tell(input, "%zu rows of %.200s, read again", model->measured.row_count,
+                    path);
 }
 
 // Measured columns under the run, shifted as FILE@SHIFT says, else to the run's first
@@ -55,8 +106,9 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
     char path[LINE_TEXT];
     double shift = (double)NAN;
     snprintf(path, sizeof path, "%s", argument);
+    const bool plays = cut_play(path);
     char *at = strrchr(path, '@');
-    if (at != NULL) {
+    if (at != NULL && access(path, F_OK) != 0) {
         if (!act_read_number(input, at + 1, &shift)) {
             return false;
         }
@@ -67,6 +119,11 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
     }
 
     const size_t rows = model->measured.row_count;
+    if (plays) {
+        return act_succeeded(input, play_measured(model, &input->fault)) &&
+               act_tell(input, "%zu rows, whose command the run plays on their clock",
+                        rows);
+    }
     if (model_lay_data(model, shift)) {
         return act_tell(input, "%zu rows, shifted by %.6g s; :data off takes them away",
                         rows, model->measured_shift);

@@ -559,7 +559,7 @@ bool act_metric(explorer_model *model, explorer_input *input, const char *argume
     if (argument[0] == '\0') {
         metric = next_metric(sweep);
     } else {
-        metric = summary_find(argument);
+        metric = summary_find_begun(argument);
     }
     if (metric < 0) {
         return refuse_metric(input, argument);

@@ -271,7 +271,7 @@ bool act_seek(explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument)
 {
     double time = session_end(&model->session);
-    if (!act_read_number_or(input, argument, "end", &time)) {
+    if (strcmp(argument, "end") != 0 && !act_read_quantity(input, argument, "s", &time)) {
         return false;
     }
     act_scrub(model, view, time);

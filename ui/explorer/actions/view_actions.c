@@ -153,7 +153,7 @@ bool act_mark(const explorer_model *model, explorer_view *view, explorer_input *
     const session *s = &model->session;
     const bool at_cursor = argument[0] == '\0';
     double time = s->now;
-    if (!act_read_number_or(input, argument, "", &time)) {
+    if (!at_cursor && !act_read_quantity(input, argument, "s", &time)) {
         return false;
     }
     const double duration = s->effective.parameters.run.duration;
@@ -460,61 +460,6 @@ bool act_quit_now(explorer_input *input)
 {
     input->quit = true;
     return true;
-}
-
-// The number of changes that no file has, of all scenarios visited.
-static int unsaved_changes(const explorer_model *model)
-{
-    int changes = 0;
-    if (model->saved_version != model_run_id(model)) {
-        changes = model->session.input_count;
-    }
-    for (int i = 0; i < model->visit_count; i++) {
-        changes += model->visits[i].from.input_count;
-    }
-    return changes;
-}
-
-// The number of pinned runs that no file has.
-static int unsaved_pins(const explorer_model *model)
-{
-    if (model->kept_pins == model->pinned.pinned) {
-        return 0;
-    }
-    return model->pinned.count;
-}
-
-bool act_quit(const explorer_model *model, explorer_input *input)
-{
-    // work is lost only if quitting is requested twice
-    const int changes = unsaved_changes(model), pins = unsaved_pins(model);
-    if (changes + pins == 0 || input->asked_to_quit) {
-        return act_quit_now(input);
-    }
-    input->asked_to_quit = true;
-
-    // what would be lost
-    char lost[LINE_TEXT] = "";
-    if (changes > 0) {
-        text_add(lost, sizeof lost, "%d change%s", changes, changes == 1 ? "" : "s");
-    }
-    if (changes > 0 && pins > 0) {
-        text_add(lost, sizeof lost, " and ");
-    }
-    if (pins > 0) {
-        text_add(lost, sizeof lost, "%d pinned run%s", pins, pins == 1 ? "" : "s");
-    }
-    return act_warn(input,
-                    "%s would be lost: q leaves all the same, s keeps all, Esc stays",
-                    lost);
-}
-
-bool act_interrupt(explorer_model *model, explorer_input *input)
-{
-    if (model->session.computing != NULL) {
-        return act_stop(model, input);
-    }
-    return act_quit(model, input);
 }
 
 // --- the palette -----------------------------------------------------------------------

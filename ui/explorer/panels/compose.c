@@ -273,10 +273,17 @@ static int draw_prompt(const explorer_input *input, screen *s)
     const char *said = input->message.text;
     const int y = s->height - 1, room = s->width - 2;
     blank_row(s, y);
-    const int x =
-        screen_print(s, 0, y, room, INK_TITLE, "%s%s", p->searches ? "find " : ":",
-                     end_of_text(p->text, room - 1));
-    screen_put(s, x, y, ' ', INK_SELECTED);
+    // where all has no room its part before the cursor is shown, which is always seen
+    char text[LINE_TEXT];
+    const bool whole = text_cells(p->text) < room - 5;
+    snprintf(text, sizeof text, "%.*s", whole ? LINE_TEXT : p->cursor, p->text);
+    const int x = screen_print(s, 0, y, room, INK_TITLE, "%s%s",
+                               p->searches ? "find " : ":", end_of_text(text, room - 1));
+    const int behind = whole ? text_cells(p->text + p->cursor) : 0;
+    screen_put(s, x, y, ' ', behind == 0 ? INK_SELECTED : INK_TEXT);
+    if (behind > 0) {
+        screen_tint(s, x - behind, y, 1, 1, INK_SELECTED);
+    }
 
     // a value that typing replaces looks selected
     if (p->replaces) {

@@ -95,8 +95,9 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "the run's course, from its events and energies")                                  \
     X("", "poles", act_poles(view), "", "",                                              \
       "natural frequencies and damping near rest, free and on the wall")                 \
-    X("", "data", act_data(model, input, argument), "", "FILE.csv[@SHIFT]|off",          \
-      "measured columns, aligned at the first contact")                                  \
+    X("", "data", act_data(model, input, argument), "", "FILE.csv[@SHIFT]|off [play]",   \
+      "measured columns, aligned at the first contact; play: with their command")        \
+    X("", "reload", act_reload(model, input), "", "", "read the measured data again")    \
     X("", "identify", act_identify(model, input, argument), "", "PATH...",               \
       "fit parameters to the measured data: that run is pinned")                         \
     X("", "undo", act_undo(model, view, input), "u", "", "take the last change back")    \
@@ -157,6 +158,8 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "what is shown: .png .pdf .svg; .csv .yaml .txt")                                  \
     X("", "save!", act_save_now(model, view, input, argument), "", "FILE",               \
       "the same over a file that is there")                                              \
+    X("", "editor", act_editor(model, input), "E", "",                                   \
+      "the scenario in $EDITOR; it is opened again behind it")                           \
     X("", "session", act_session(model, view, input, argument), "", "save|open FILE",    \
       "runs, changes, pins and panes, to go on with another day")                        \
     X("", "copy", act_copy(model, view, input, argument), "", "value|run|screen",        \
@@ -191,9 +194,9 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
     X("", "wait", act_wait(model, view, input, argument), "", "SECONDS",                 \
       "in a script: let time pass")                                                      \
     X("", "help", act_help(view), "?", "", "this page")                                  \
-    X("", "interrupt", act_interrupt(model, input), "C-c", "",                           \
+    X("", "interrupt", act_interrupt(model, view, input), "C-c", "",                     \
       "stop what is being computed, else leave")                                         \
-    X("", "quit", act_quit(model, input), "q", "",                                       \
+    X("", "quit", act_quit(model, view, input), "q", "",                                 \
       "leave the lab; asks if changes would be lost")                                    \
     X("", "quit!", act_quit_now(input), "", "", "leave the lab, whatever is lost")
 

@@ -169,6 +169,9 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
         if (run_origin_is_of(&list->runs[i].from, s)) {
             list->baseline = list->selected = i;
             list->runs[i].hidden = false;
+            if (name[0] != '\0') {
+                snprintf(list->runs[i].name, RUN_NAME, "%s", name);
+            }
             return STATUS_OK;
         }
     }

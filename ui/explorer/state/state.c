@@ -138,6 +138,7 @@ void state_finish(explorer_model *model, explorer_view *view)
         run_origin_finish(&model->visits[i].from);
     }
     session_finish(&model->session);
+    free(model->saved_looks);
 }
 
 // Puts a session in the place of the present one, which is compared with what that was.

@@ -103,10 +103,11 @@ typedef struct explorer_model {
     run_difference residual; // of the measured data from the run
     trace measured;          // data laid under the run, no rows: none
     char measured_file[LINE_TEXT];
-    double measured_shift;      // by which they lie later than in the file [s]
-    bool measured_aligned;      // they touch when the run does
-    unsigned long measured_run; // the run they were last aligned to
-    unsigned long measured_id;  // counts the files read, and how often one was shifted
+    char measured_digest[SHA256_TEXT]; // of the file's content
+    double measured_shift;             // by which they lie later than in the file [s]
+    bool measured_aligned;             // they touch when the run does
+    unsigned long measured_run;        // the run they were last aligned to
+    unsigned long measured_id; // counts the files read, and how often one was shifted
 
     // the scenarios opened
     unsigned opened;      // number of them
@@ -116,6 +117,8 @@ typedef struct explorer_model {
     // what was saved of all this
     unsigned long saved_version;  // the run last saved as a scenario, 0 for none
     char session_path[LINE_TEXT]; // the session file of this visit, "" for none
+    char
+        *saved_looks; // how the runs were looked at when that was saved last, NULL: never
     unsigned long kept_pins; // runs ever pinned when they were last saved in a session
 
     // results derived from the runs, kept until they change
@@ -151,7 +154,8 @@ typedef struct explorer_view {
     // settings
     looks looks;
     key_bindings keys;
-    bool settings_broken; // the settings file contains errors
+    char kept_panes[PANES + 1]; // that the settings file has, "" for none
+    bool settings_broken;       // the settings file contains errors
 } explorer_view;
 
 // The input: what is being typed, and what is answered to it.
@@ -160,6 +164,8 @@ typedef struct explorer_input {
     message_line message;
     fault fault;        // of what an action called last, until act_succeeded says it
     char *copied;       // for the terminal's clipboard, NULL: nothing
+    bool has_terminal;  // programs can be started on it
+    char edits[1024];   // file that an editor is to be started with, "" for none
     bool asked_to_quit; // the last key asked to quit, and changes would be lost
     bool quit;
 } explorer_input;
