@@ -30,7 +30,43 @@ TEST(test_words_find_things_of_every_kind)
     // all of it without words, each once
     const int all = palette_find(menu, keys, "", entries);
     assert_int_equal(all, explorer_command_count + parameter_count + signal_count +
-                              menu->count);
+                              summary_count + menu->count);
+}
+
+// Words of other programs find what is meant: in the palette, in the help and as the
+// number that they name.
+TEST(test_other_words_find_what_is_meant)
+{
+    static palette_entry entries[PALETTE_ENTRIES];
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, "<C-p>");
+    static const struct {
+        const char *word, *meant;
+    } cases[] = {{"figure", "save"},
+                 {"overshoot", "force_over_command_N"},
+                 {"settling", "settling_time_s"},
+                 {"history", "changes"},
+                 {"undo", "undo"},
+                 {"fft", "spectrum"}};
+    for (EACH(c, cases)) {
+        const int count =
+            palette_find(&ex.view.scenarios, &ex.view.keys, c->word, entries);
+        bool found = false;
+        for (int i = 0; i < count && i < 12; i++) {
+            const palette_text text =
+                palette_describe(&ex.view.scenarios, &ex.view.keys, entries[i]);
+            found = found || strcmp(text.name, c->meant) == 0;
+        }
+        fail_if(!found, "'%s' does not find %s", c->word, c->meant);
+    }
+    press_shows(&ex, "<Esc>?/figure<Enter>", ":save", "!:undo");
+
+    // a quantity tells its value
+    press(&ex, "<Esc><Esc><C-p>peak_force_N<Enter>");
+    double value = 0;
+    assert_int_equal(sscanf(ex.input.message.text, "peak_force_N = %lf N", &value), 1);
+    check_close(value, peak(&ex), 1e-4);
+    press_warns(&ex, ":quantity nosuch<Enter>", "no number");
 }
 
 TEST(test_enter_does_what_the_entry_is_for)

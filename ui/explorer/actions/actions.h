@@ -66,6 +66,8 @@ bool act_difference(explorer_model *model, const explorer_view *view,
 bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input,
                const char *argument);
 bool act_solve(explorer_model *model, explorer_input *input, const char *argument);
+bool act_quantity(const explorer_model *model, explorer_input *input,
+                  const char *argument);
 bool act_metric(explorer_model *model, explorer_input *input, const char *argument);
 
 // measured data (measured_actions.c)

@@ -46,7 +46,7 @@ static status play_measured(explorer_model *model, fault *f)
                          PARAMETER_INDEX(control.playback_column),
                          PARAMETER_INDEX(control.playback_shift),
                          PARAMETER_INDEX(control.law)};
-    const double shift = -model->measured.rows[0].time;
+    const double shift = 0 - model->measured.rows[0].time;
     TRY(parameter_set_text(&p, plays[0], model->measured_file, f));
     TRY(parameter_set_text(&p, plays[1], "command", f));
     TRY(parameter_set_number(&p, plays[2], shift, f));

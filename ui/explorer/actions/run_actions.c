@@ -552,6 +552,22 @@ static bool refuse_metric(explorer_input *input, const char *name)
                       name, near);
 }
 
+bool act_quantity(const explorer_model *model, explorer_input *input,
+                  const char *argument)
+{
+    const int index = summary_find_begun(argument);
+    if (index < 0) {
+        return refuse_metric(input, argument);
+    }
+    const summary_info *info = &summary_table[index];
+    const double value = summary_value(&model->session.run.summary, index);
+    if (!isfinite(value)) {
+        return act_tell(input, "%s did not occur: %s", info->key, info->description);
+    }
+    return act_tell(input, "%s = %.6g%s%s: %s", info->key, value,
+                    info->unit[0] ? " " : "", info->unit, info->description);
+}
+
 bool act_metric(explorer_model *model, explorer_input *input, const char *argument)
 {
     lab_sweep *sweep = &model->sweep;

@@ -287,6 +287,7 @@ typedef struct help_line {
     char text[LINE_TEXT];
     int keys; // cells at its beginning that are keys
     bool heading;
+    const char *also; // words by which it is found, too; NULL: none
 } help_line;
 
 // Writes the help page, wrapped to a width; returns how many lines it has, not more than

@@ -18,10 +18,9 @@
 // --- the text of the help --------------------------------------------------------------
 
 static const char first_visit[] =
-    "A first visit: o lists the scenarios. Watch the arm bounce, Space stops it. I "
-    "goes back to just before it touched, PgUp further. b keeps this run, Enter types "
-    "another voltage from here on, Space plays on beside the old run, c compares their "
-    "peaks, s saves a figure of both.";
+    "A first visit: o lists the scenarios. Space stops the arm, I goes back to just "
+    "before it touched. Enter types another voltage from here on, Space plays on beside "
+    "the run as opened, s saves a figure of both.";
 static const char everywhere[] =
     "Esc goes back one level. : takes a command, Tab completes it, "
     "the beginning of a name will do.";
@@ -119,31 +118,59 @@ static void add_keys(page *p, const char *keys, const char *text)
     }
 }
 
-// What the commands do, in groups, with the keys that carry each out.
+// What a command does, with the keys that carry it out. Where there is room keys, call
+// and meaning are three columns, else the call goes before the meaning.
+static void add_command(page *p, const char *keys, const explorer_command *c)
+{
+    char call[64], text[LINE_TEXT];
+    const int first = p->count;
+    snprintf(call, sizeof call, ":%s", c->name);
+    if (c->argument[0] != '\0') {
+        text_add(call, sizeof call, " %s", c->argument);
+    }
+    if (p->width >= 96) {
+        snprintf(text, sizeof text, "%-32s %s", call, c->help);
+    } else {
+        snprintf(text, sizeof text, "%s  %s", call, c->help);
+    }
+    add_keys(p, keys, text);
+    for (int i = first; i < p->count; i++) {
+        p->lines[i].also = synonyms_of(c->name);
+    }
+}
+
+// The commands of a group from the index-th on, those with keys or those without;
+// returns the index of the next group's first.
+static int add_group(page *p, const key_bindings *b, int index, bool with_keys)
+{
+    int i = index;
+    do {
+        char keys[64];
+        const explorer_command *c = &explorer_command_table[i];
+        key_names_of(b, c->name, keys, sizeof keys);
+        if ((keys[0] != '\0') == with_keys) {
+            add_command(p, keys, c);
+        }
+        i++;
+    } while (i < explorer_command_count && explorer_command_table[i].group[0] == '\0');
+    return i;
+}
+
+// The groups of commands in one sentence, then each: first what has keys.
 static void add_commands(page *p, const key_bindings *b)
 {
-    // wide enough: keys, call and meaning are three columns; else the call goes before
-    // the meaning
-    const bool wide = p->width >= 96;
+    char index[LINE_TEXT] = "Below:";
     for (int i = 0; i < explorer_command_count; i++) {
-        const explorer_command *c = &explorer_command_table[i];
-        char keys[64], call[64], text[LINE_TEXT];
-
-        // a group's heading before its first command
-        if (c->group[0] != '\0') {
-            add_heading(p, c->group);
+        const char *group = explorer_command_table[i].group;
+        if (group[0] != '\0') {
+            text_add(index, sizeof index, "%s %s", i == 0 ? "" : ",", group);
         }
-        snprintf(call, sizeof call, ":%s", c->name);
-        if (c->argument[0] != '\0') {
-            text_add(call, sizeof call, " %s", c->argument);
-        }
-        if (wide) {
-            snprintf(text, sizeof text, "%-32s %s", call, c->help);
-        } else {
-            snprintf(text, sizeof text, "%s  %s", call, c->help);
-        }
-        key_names_of(b, c->name, keys, sizeof keys);
-        add_keys(p, keys, text);
+    }
+    add_text(p, "%s. / filters by words.", index);
+    for (int i = 0; i < explorer_command_count;) {
+        add_heading(p, explorer_command_table[i].group);
+        add_group(p, b, i, true);
+        i = add_group(p, b, i, false);
     }
 }
 
@@ -177,7 +204,6 @@ int help_write(const key_bindings *b, int width, help_line *lines, int most)
         p.column = 20;
     }
     add_text(&p, "%s", first_visit);
-    new_line(&p);
     add_text(&p, "%s", everywhere);
     add_commands(&p, b);
     add_user_keys(&p, b);
@@ -193,7 +219,11 @@ static int keep_matching(help_line *lines, int count, const char *filter)
 {
     int kept = 0;
     for (int i = 0; i < count; i++) {
-        if (lines[i].text[0] != '\0' && filter_passes(filter, lines[i].text)) {
+        // other words for a command find it, too
+        char all[2 * LINE_TEXT];
+        const char *also = lines[i].also != NULL ? lines[i].also : "";
+        snprintf(all, sizeof all, "%.255s %.255s", lines[i].text, also);
+        if (lines[i].text[0] != '\0' && filter_passes(filter, all)) {
             lines[kept++] = lines[i];
         }
     }

@@ -86,6 +86,8 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "limit of a value for a condition: it is pinned")                                  \
     X("", "metric", act_metric(model, input, argument), "M", "[QUANTITY]",               \
       "what the sweep compares by; alone: the next one")                                 \
+    X("", "quantity", act_quantity(model, input, argument), "", "QUANTITY",              \
+      "a number of this run's summary, and what it is")                                  \
     X("", "stop", act_stop(model, input), "", "",                                        \
       "compute no further; Space at its end goes on")                                    \
     X("", "compare", act_compare(view), "c", "", "both runs in numbers")                 \

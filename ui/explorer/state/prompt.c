@@ -10,6 +10,7 @@
 #include "src/base/whole_file.h"
 #include "src/tables/parameters.h"
 #include "src/tables/signals.h"
+#include "src/tables/summary.h"
 #include "ui/explorer/state/view.h"
 #include "ui/terminal/keys.h"
 #include "ui/terminal/line_editor.h"
@@ -134,11 +135,9 @@ void prompt_use_history(prompt *p, const char *path)
 // What each kind is called, and the command that deals with what is chosen.
 static const struct {
     const char *name, *command;
-} kinds[PALETTE_KINDS] = {{"command", ""},
-                          {"parameter", "edit "},
-                          {"signal", "trace "},
-                          {"scenario", "open "},
-                          {"lesson", "open "}};
+} kinds[PALETTE_KINDS] = {{"command", ""},       {"parameter", "edit "},
+                          {"signal", "trace "},  {"quantity", "quantity "},
+                          {"scenario", "open "}, {"lesson", "open "}};
 
 palette_text palette_describe(const scenario_menu *menu, const key_bindings *keys,
                               palette_entry entry)
@@ -160,6 +159,10 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
         text.name = signal_table[entry.index].name;
         text.about = signal_table[entry.index].description;
         break;
+    case PALETTE_QUANTITY:
+        text.name = summary_table[entry.index].key;
+        text.about = summary_table[entry.index].description;
+        break;
     default:
         text.name = menu->names[entry.index];
         text.about = scenario_menu_text(menu, entry.index).title;
@@ -167,13 +170,25 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
     return text;
 }
 
-// Other words by which people look for a thing, "" for none.
-static const char *synonyms_of(const char *name)
+const char *synonyms_of(const char *name)
 {
     static const struct {
         const char *name, *words;
-    } table[] = {{"save", "export picture image plot"},
-                 {"scene", "picture image 3d"},
+    } table[] = {{"save", "export figure picture image plot recipe csv"},
+                 {"scene", "figure picture image 3d"},
+                 {"editor", "edit source yaml vim"},
+                 {"changes", "history list edits"},
+                 {"undo", "back revert history"},
+                 {"redo", "forward again history"},
+                 {"data", "measurement recording csv bench overlay"},
+                 {"reload", "refresh again recording"},
+                 {"spectrum", "fft frequency"},
+                 {"mark", "cursor measure ruler"},
+                 {"peak_force_N", "maximum hit hard"},
+                 {"force_over_command_N", "overshoot"},
+                 {"force_overshoot_percent", "overshoot"},
+                 {"settling_time_s", "settling settled"},
+                 {"impacts", "bounces hits"},
                  {"solve", "goal below above limit target threshold"},
                  {"control.force", "goal target setpoint"},
                  {"wall.restitution", "bounce rebound"},
@@ -184,7 +199,7 @@ static const char *synonyms_of(const char *name)
                  {"branch", "keep compare copy"},
                  {"why", "explain cause reason"},
                  {"poles", "eigenvalues modes vibration linear"},
-                 {"session", "store load keep"},
+                 {"session", "store save load keep resume"},
                  {"quit", "exit leave"}};
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
         if (strcmp(table[i].name, name) == 0) {
@@ -242,8 +257,9 @@ static int compare_entries(const void *a, const void *b)
 int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
                  palette_entry entries[PALETTE_ENTRIES])
 {
-    const int counts[PALETTE_KINDS] = {explorer_command_count, parameter_count,
-                                       signal_count, menu->count, menu->count};
+    const int counts[PALETTE_KINDS] = {
+        explorer_command_count, parameter_count, signal_count,
+        summary_count,          menu->count,     menu->count};
     int count = 0;
     for (int kind = 0; kind < PALETTE_KINDS; kind++) {
         for (int i = 0; i < counts[kind] && count < PALETTE_ENTRIES; i++) {

@@ -51,12 +51,13 @@ bool text_type(char *text, int key);
 // The palette: one searchable list of commands with their keys, parameters, signals,
 // scenarios and lessons.
 
-enum { PALETTE_ENTRIES = 768 };
+enum { PALETTE_ENTRIES = 1024 };
 
 typedef enum palette_kind {
     PALETTE_COMMAND,
     PALETTE_PARAMETER,
     PALETTE_SIGNAL,
+    PALETTE_QUANTITY,
     PALETTE_SCENARIO,
     PALETTE_LESSON,
     PALETTE_KINDS
@@ -91,6 +92,9 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
 // The command line of an entry; whether it still needs an argument.
 void palette_line(const scenario_menu *menu, const key_bindings *keys,
                   palette_entry entry, char line[LINE_TEXT], bool *needs_argument);
+
+// Other words by which people look for a command or a quantity, "" for none.
+const char *synonyms_of(const char *name);
 
 // Whether an open prompt shows the palette: it searches, or its first word is being
 // typed.
