@@ -55,6 +55,7 @@ TEST(a_table_is_read_however_it_is_written)
         "time_ms,v_V,note\n0,1.5,begin\n500,-2,\n1000,2500,\"a, b\"\n",
         "t/s,V/kV,v/V\r0,7,1.5\r0.5,7,-2\r1,7,2500\r",
         "\xEF\xBB\xBFTIME[us],V[V]\n0,1.5\n5e5,-2\n1e6,2500\n,,\n",
+        "time_s,v_V,speed_rad/s\n0,1.5,1\n0.5,-2,1\n1,2500,1\n",
         "sample,v\n0,1.5\n1,-2\n2,2500\n",
         "time[#],v\n0,1.5\n1,-2\n2,2500\n",
         "time,v\n0,1.5\n0.5,-2\n1,2500\n1.5",
@@ -75,7 +76,7 @@ TEST(a_table_is_read_however_it_is_written)
     }
 }
 
-// What is left out is told, with the line where it stands; what lasts is held or missing.
+// What is left out or moved is told; what lasts is held or missing.
 TEST(rows_without_a_time_are_left_out_and_gaps_filled)
 {
     char text[4096] = "time[s],v[V],n[N]\n", told[200];
@@ -99,15 +100,18 @@ TEST(rows_without_a_time_are_left_out_and_gaps_filled)
     DONE(csv_table_times(&t, "time", 0, &clock, &times, &f));
     DONE(csv_table_numbers(&t, "v", "V", GAPS_HELD, &volts, &f));
     DONE(csv_table_numbers(&t, "n", "N", GAPS_MISSING, &newtons, &f));
-    assert_int_equal(t.rows, 58);
+    assert_int_equal(t.rows, 59);
     check_close(times[20], 21, 1e-12);
-    check_close(times[30], 32, 1e-12);
+    check_close(times[29], 29.5, 1e-12);
+    check_close(times[30], 30, 1e-12);
+    assert_int_equal(t.lines[29], 33);
     check_close(volts[0], 1, 0);
-    check_close(volts[57], 1, 0);
-    assert_true(isnan(newtons[0]) && newtons[1] == 2 && newtons[57] == 2);
-    assert_string_equal(csv_table_left_out(&t, told, sizeof told),
-                        "line 62, which breaks off, is left out; 1 without a time (the "
-                        "first in line 22); 1 with a time before that of the row above");
+    check_close(volts[58], 1, 0);
+    assert_true(isnan(newtons[0]) && newtons[1] == 2 && newtons[58] == 2);
+    assert_string_equal(
+        csv_table_left_out(&t, told, sizeof told),
+        "line 62, which breaks off, is left out; 1 without a time (the "
+        "first in line 22); 1 before the row above by time, put in order");
 }
 
 // Times that come to the nearest of their last digit are those of the samples, times that

@@ -111,10 +111,12 @@ static char find_separator(const char *text)
         const char *rest = text;
         int before = 0, alike = 0;
         for (int line = 0; *rest != '\0' && line < LINES_LOOKED_AT; line++) {
-            const char *inside = rest;
-            const bool comment = skip_comment_sign(&inside);
+            if (skip_comment_sign(&rest)) {
+                rest += strcspn(rest, "\n");
+                continue;
+            }
             const int fields = count_fields(&rest, *s);
-            if (comment || fields == 0) {
+            if (fields == 0) {
                 continue;
             }
             if (fields > 1 && fields == before) {
@@ -339,14 +341,21 @@ static size_t skip_comments(const file_rows *r, size_t row)
     return row;
 }
 
-// The row of data that follows a row of headings, behind a row of units.
+// Whether units stand below a row of headings, maybe as a comment: for each of them.
+static bool has_units_below(const file_rows *r, size_t headings)
+{
+    const size_t below = headings + 1;
+    return below < r->count && has_units(r, below) &&
+           fields_of(r, below) == fields_of(r, headings);
+}
+
+// The row of data that follows a row of headings and their units.
 static size_t data_below(const file_rows *r, size_t headings)
 {
-    const size_t below = skip_comments(r, headings + 1);
-    if (below < r->count && has_units(r, below)) {
-        return skip_comments(r, below + 1);
+    if (has_units_below(r, headings)) {
+        headings++;
     }
-    return below;
+    return skip_comments(r, headings + 1);
 }
 
 // Whether a row has numbers in as many fields as some headings, give or take one.
@@ -404,23 +413,25 @@ static char **copy_row(const file_rows *r, size_t row, int columns)
 
 // --- the table -------------------------------------------------------------------------
 
-// Whether each row from `first` on has one field more than there are headings, which
-// counts the rows from 0 or 1 on.
+// Whether each row from `first` on has one field more than there are headings, which are
+// not all empty at the end, and its first field counts the rows from 0 or 1 on.
 static bool rows_are_counted(const file_rows *r, size_t first, int columns)
 {
     double count = 0;
-    bool from_zero = true, from_one = true;
+    bool from_zero = true, from_one = true, last_is_empty = true;
     for (size_t row = first; row < r->count; row = skip_comments(r, row + 1)) {
         double number = -1;
         const char *field = r->fields[r->begin[row]];
         if (fields_of(r, row) != columns + 1 || !csv_layout_number(field, '.', &number)) {
             return false;
         }
+        const char *last = r->fields[r->begin[row + 1] - 1];
+        last_is_empty = last_is_empty && last[0] == '\0';
         from_zero = from_zero && number == count;
         from_one = from_one && number == count + 1;
         count++;
     }
-    return from_zero || from_one;
+    return !last_is_empty && (from_zero || from_one);
 }
 
 // Adds a row of the file to the table, from its field `skipped` on. What it has more than
@@ -497,16 +508,15 @@ static status make_table(csv_table *t, const file_rows *r, bool cut, fault *f)
     t->headings = copy_row(r, headings, t->columns);
 
     // a row of units
-    const size_t below = skip_comments(r, headings + 1), data = data_below(r, headings);
     bool room = t->headings != NULL;
-    if (below < data) {
-        t->units = copy_row(r, below, t->columns);
+    if (has_units_below(r, headings)) {
+        t->units = copy_row(r, headings + 1, t->columns);
         room = room && t->units != NULL;
     }
     if (!room) {
         return fault_no_memory(f);
     }
-    TRY(add_table_rows(t, r, data, cut, f));
+    TRY(add_table_rows(t, r, data_below(r, headings), cut, f));
     t->decimal = find_decimal(t);
     return STATUS_OK;
 }

@@ -26,10 +26,11 @@ typedef struct csv_table {
     int *lines;      // of each row in the file, from 1; owned
     char decimal;    // sign before the decimals, '.' or ','
 
-    // rows that are left out: how many, and the line of the first
-    int cut_line; // of a last row that breaks off; 0: there is none
-    size_t untimed, receding;
-    int untimed_line, receding_line;
+    // rows that are left out, and rows that csv_table_times puts in order
+    int cut_line;     // of a last row that breaks off; 0: there is none
+    size_t untimed;   // left out, without a time
+    int untimed_line; // of the first
+    size_t receding;  // with a time before that of the row above
 } csv_table;
 
 // Divides a file into headings and at least `least` rows, at least one, of as many

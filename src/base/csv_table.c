@@ -273,34 +273,44 @@ static bool counts_samples(const csv_table *t, const char *heading, int column)
     return false;
 }
 
-// Moves a row of the table up to another place.
-static void move_row(csv_table *t, size_t from, size_t to)
+// Exchanges two rows of the table and their times; one may be the other.
+static void exchange_rows(csv_table *t, double *times, size_t a, size_t b)
 {
-    const size_t columns = (size_t)t->columns;
-    memmove(t->fields + to * columns, t->fields + from * columns,
-            columns * sizeof *t->fields);
-    t->lines[to] = t->lines[from];
+    char **of_a = t->fields + a * (size_t)t->columns;
+    char **of_b = t->fields + b * (size_t)t->columns;
+    for (int c = 0; c < t->columns; c++) {
+        char *field = of_a[c];
+        of_a[c] = of_b[c];
+        of_b[c] = field;
+    }
+    const int line = t->lines[a];
+    const double time = times[a];
+    t->lines[a] = t->lines[b];
+    times[a] = times[b];
+    t->lines[b] = line;
+    times[b] = time;
 }
 
-// Takes the rows out of the table whose time is missing or lies before that of the row
-// above, and counts them.
-static void leave_out_rows(csv_table *t, double *times)
+// Takes the rows out of the table that have no time, puts those whose time lies before
+// that of the row above in their places, and counts both.
+static void order_rows(csv_table *t, double *times)
 {
     size_t kept = 0;
     for (size_t r = 0; r < t->rows; r++) {
-        const bool recedes = kept > 0 && times[r] < times[kept - 1];
         if (isnan(times[r])) {
             if (t->untimed++ == 0) {
                 t->untimed_line = t->lines[r];
             }
-        } else if (recedes) {
-            if (t->receding++ == 0) {
-                t->receding_line = t->lines[r];
-            }
-        } else {
-            times[kept] = times[r];
-            move_row(t, r, kept++);
+            continue;
         }
+        exchange_rows(t, times, r, kept);
+        if (kept > 0 && times[kept] < times[kept - 1]) {
+            t->receding++;
+        }
+        for (size_t k = kept; k > 0 && times[k] < times[k - 1]; k--) {
+            exchange_rows(t, times, k, k - 1);
+        }
+        kept++;
     }
     t->rows = kept;
 }
@@ -408,7 +418,7 @@ status csv_table_times(csv_table *t, const char *heading, double rate,
     }
     TRY(read_fields(t, column, factor, true, times, f));
     TRY(check_times(t, column, times, f));
-    leave_out_rows(t, times);
+    order_rows(t, times);
 
     // and when they were recorded
     if (!sample_clock_fit(clock, times, t->rows)) {
@@ -472,7 +482,7 @@ const char *csv_table_left_out(const csv_table *t, char *text, size_t size)
                  text[0] != '\0' ? "; " : "", t->untimed, t->untimed_line);
     }
     if (t->receding > 0) {
-        text_add(text, size, "%s%zu with a time before that of the row above",
+        text_add(text, size, "%s%zu before the row above by time, put in order",
                  text[0] != '\0' ? "; " : "", t->receding);
     }
     return text;

@@ -43,11 +43,11 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
 // were recorded. `heading` is of the column with the times, NULL for csv_table_clock's.
 // One that counts samples is divided by `rate` [1/s], refused where that is 0.
 //
-// Rows without a time, and rows with a time before that of the row above, are taken out
-// of the table and counted there; of more than one in 20 the first is a fault, as are all
-// that csv_table_numbers finds. Stamps of a recording that are off its clock's samples by
-// no more than their last digit and a hundredth of a period are replaced by the samples'
-// instants.
+// Rows without a time are taken out of the table, and rows with a time before that of the
+// row above put in order; both are counted. Of more than one in 20 the first is a fault,
+// as are all that csv_table_numbers finds. Stamps of a recording that are off its clock's
+// samples by no more than their last digit and a hundredth of a period are replaced by
+// the samples' instants.
 status csv_table_times(csv_table *t, const char *heading, double rate,
                        sample_clock *clock, double **values, fault *f);
 
@@ -60,7 +60,7 @@ status csv_table_play(csv_table *t, double rate, double shift, double end,
                       sample_clock *clock, double **values, char told[CSV_TOLD],
                       fault *f);
 
-// Writes how many rows were left out and why, with the line of the first; "" if none was.
+// Writes how many rows were left out or put in order, and why; "" if none was.
 const char *csv_table_left_out(const csv_table *t, char *text, size_t size);
 
 // The value of a column at an instant: that of the last row not later, or straight

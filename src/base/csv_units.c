@@ -137,9 +137,9 @@ static const char *find_unit(const char *heading, char unit[UNIT_TEXT])
         return bracket;
     }
 
-    // a comma, a stroke (the first, as in v/rad/s), an underline or a blank before it
-    const char *const signs[] = {strrchr(heading, ','), strchr(heading, '/'),
-                                 strrchr(heading, '_'), strrchr(heading, ' ')};
+    // a comma, an underline, a blank or a stroke (the first, as in v/rad/s) before it
+    const char *const signs[] = {strrchr(heading, ','), strrchr(heading, '_'),
+                                 strrchr(heading, ' '), strchr(heading, '/')};
     for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
         const bool has_name = signs[i] != NULL && signs[i] > heading;
         if (has_name && copy_between(signs[i] + 1, end, unit) && is_known(unit)) {

@@ -7,9 +7,10 @@
 #include "src/base/numbers.h"
 #include "src/base/scoped.h"
 
-#define NEAR   0.25 // of a period: how far a stamp may lie from its sample
-#define STEADY 0.95 // share of the stamps that have to
-#define ALIKE  1.5  // ratio of steps that are one period
+#define NEAR        0.25 // of a period: how far a stamp may lie from its sample
+#define STEADY      0.95 // share of the stamps that have to
+#define ALIKE       1.5  // ratio of steps that are one period
+#define CLOCK_ERROR 1e-3 // relative, of a recorder's clock
 
 enum { LEAST_ROWS = 4 };
 
@@ -161,6 +162,25 @@ bool sample_clock_fit(sample_clock *c, const double *stamps, size_t rows)
 }
 
 // --- whose clock it is -----------------------------------------------------------------
+
+double sample_clock_correction(const sample_clock *c, double rate)
+{
+    if (c->period == 0) {
+        return 1;
+    }
+
+    // the nearest whole number of samples to a sample
+    const double ratio = 1 / (rate * c->period);
+    double whole = floor(ratio + 0.5);
+    if (ratio < 1) {
+        whole = 1 / floor(1 / ratio + 0.5);
+    }
+    const double factor = ratio / whole;
+    if (fabs(factor - 1) > CLOCK_ERROR) {
+        return 1;
+    }
+    return factor;
+}
 
 bool sample_clock_is_foreign(size_t rows, double first, double last, double end)
 {

@@ -36,6 +36,11 @@ double sample_clock_number(const sample_clock *c, double stamp);
 // The instant of sample n [s].
 double sample_clock_instant(const sample_clock *c, double n);
 
+// What a recording's times have to be multiplied by, so that its samples come at a rig's
+// rate [1/s], whole numbers of them to one of the rig's or the other way round, where
+// they do but for an error of the recorder's clock of 0.1 %; else 1.
+double sample_clock_correction(const sample_clock *c, double rate);
+
 // Whether a recording has a clock of its own, such as the time of day, that has nothing
 // to do with a run from 0 to `end`: of the rows of a recording, from the instant `first`
 // to `last`, none lies in the run [s].

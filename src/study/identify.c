@@ -24,6 +24,7 @@ void identify_finish(identification *id)
         free(t->time);
         free(t->command);
         free(t->contacts);
+        free(t->contact_width);
     }
     free(id->residual);
     *id = (identification){0};

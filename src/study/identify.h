@@ -52,6 +52,8 @@ enum { OWN_SHIFT, OWN_OFFSET, OWN_ANGLE, OWN_VELOCITY, OWNS };
 
 enum { IDENTIFY_UNKNOWNS = IDENTIFY_PATHS + IDENTIFY_TRACES * OWNS };
 
+enum { IDENTIFY_COLUMNS = 400 }; // room for the headings of a trace
+
 // What becomes of a reading.
 typedef enum reading_use {
     READING_COMPARED,
@@ -61,14 +63,17 @@ typedef enum reading_use {
     READING_AT_RANGE,        // near the end of the converter's range
     READING_USES
 } reading_use;
+extern const char *const identify_uses[READING_USES]; // in words, but for the first
 
 typedef struct recorded_trace {
     char *file;
-    size_t table_rows;                   // of its table
-    char left_out[CSV_TOLD];             // rows that are not among those, in words, or ""
-    sample_clock clock;                  // of its samples
-    bool is_held;                        // rows between samples repeat these
-    size_t overwritten;                  // rows that a later one of their sample replaces
+    size_t table_rows;                // of its table
+    char left_out[CSV_TOLD];          // rows that are not among those, in words, or ""
+    char taken[IDENTIFY_COLUMNS];     // headings of its columns
+    char not_taken[IDENTIFY_COLUMNS]; // and of others
+    sample_clock clock;               // of its samples
+    bool is_held;                     // rows between samples repeat these
+    double rate;                      // at which its samples are taken to have come [1/s]
     size_t uses[CHANNELS][READING_USES]; // how many readings of each
     size_t rows;                         // one for each sample of the rig
     double begin;                        // of its clock [s]
@@ -78,6 +83,7 @@ typedef struct recorded_trace {
     double *deviation[CHANNELS]; // standard deviation of each in its residual's unit, 0:
                                  // left out
     double *contacts; // instants of touches after a flight of at least IDENTIFY_GUARD [s]
+    double *contact_width; // between the readings before and after each [s]
     int contact_count;
     size_t residuals;     // how many it has
     double own[OWNS];     // shift [s], offset [rad], angle [rad], velocity [rad/s]
@@ -212,6 +218,8 @@ bool identify_explained(const identification *id);
 // "signal", "from_s", "to_s", "rms", "rms_over_deviation"}, "search": {"starts",
 // "reached", "runs"}, "traces"}. NULL without memory.
 json_t *identify_json(const identification *id);
+// Of traces that are read only: {"scenario", "traces"}.
+json_t *identify_preview_json(const identification *id);
 json_t *identify_traces_json(const identification *id);
 
 // A set of IDENTIFY_CASES arms drawn from the covariance, for robust and tune --over. The
@@ -219,10 +227,6 @@ json_t *identify_traces_json(const identification *id);
 void identify_write_set(FILE *stream, const identification *id);
 
 // --- for the parts of identify
-
-// The rate at which a trace's samples came [1/s]: that of its clock, `usual` where that
-// is the same within its error, or where they came at no steady rate.
-double identify_rate(const recorded_trace *t, double usual);
 
 // The value of the range to search that is nearest to another.
 double identify_within_range(const fitted_parameter *fit, double value);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/base/csv_table.h"
+#include "src/base/words.h"
 #include "src/rig/rig.h"
 #include "src/run/run.h"
 #include "src/study/identify.h"
@@ -14,7 +15,6 @@
 #define SAME_INSTANT    1e-6 // of a sampling period
 #define NEAR_RANGE      5.0  // standard deviations from the end of a converter's range
 #define LEAST_DEVIATION 1e-6 // of an ideal channel, in its unit
-#define ROUNDING        1e-9 // relative, of a period
 #define HELD            1.5  // periods of rows that a sample lasts which they repeat
 
 enum {
@@ -26,6 +26,12 @@ enum {
 const int identify_signals[CHANNELS] = {
     SIGNAL_INDEX(encoder),     SIGNAL_INDEX(tachometer), SIGNAL_INDEX(force_reading),
     SIGNAL_INDEX(piezo_force), SIGNAL_INDEX(film),       SIGNAL_INDEX(accelerometer)};
+
+const char *const identify_uses[READING_USES] = {
+    [READING_MISSING] = "missing",
+    [READING_NEAR_TOUCH] = "within 10 ms of a touch",
+    [READING_WITHOUT_CONTACT] = "without contact",
+    [READING_AT_RANGE] = "at the end of the range"};
 
 // --- reading ---------------------------------------------------------------------------
 
@@ -145,8 +151,9 @@ static status check_stamps(const recorded_trace *t, size_t alike, size_t rows, f
 }
 
 // Keeps one row for each sample: of several, which repeat what the rig holds, the last
-// one's values. Time then counts from the first sample.
-static status keep_samples(recorded_trace *t, fault *f)
+// one's values. Time then counts from the first sample, by the rig's clock where the
+// recorder's differs from that by its error only.
+static status keep_samples(recorded_trace *t, double usual_rate, fault *f)
 {
     sample_clock held;
     TRY(find_held_clock(t, &held, f));
@@ -184,8 +191,24 @@ static status keep_samples(recorded_trace *t, fault *f)
         put_row(t, i, kept - 1, first);
     }
     TRY(check_stamps(t, alike, t->rows, f));
-    t->overwritten = alike;
     t->rows = kept;
+
+    // a sample that changes nothing is not missing
+    if (t->is_held) {
+        t->clock.missing = (size_t)(last + 1) - kept;
+        t->clock.gaps = 0;
+        t->clock.longest = 0;
+    }
+
+    // the rig's clock, or that of the recording
+    const double correction = sample_clock_correction(&t->clock, usual_rate);
+    for (size_t i = 0; i < kept; i++) {
+        t->time[i] *= correction;
+    }
+    t->rate = usual_rate;
+    if (period > 0) {
+        t->rate = 1 / (period * correction);
+    }
     return STATUS_OK;
 }
 
@@ -275,6 +298,7 @@ static void find_touches(recorded_trace *t, const parameters *p, unsigned char *
         // a touch soon after a release is no touch of its own
         const double change = (t->time[last] + t->time[i]) / 2;
         if (touches && flew && change - released > IDENTIFY_GUARD) {
+            t->contact_width[t->contact_count] = t->time[i] - t->time[last];
             t->contacts[t->contact_count++] = change;
         }
         released = change;
@@ -340,7 +364,8 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
 {
     SCOPED(free_kept) unsigned char *near = calloc(t->rows, 1);
     t->contacts = calloc(t->rows, sizeof *t->contacts);
-    if (near == NULL || t->contacts == NULL) {
+    t->contact_width = calloc(t->rows, sizeof *t->contact_width);
+    if (near == NULL || t->contacts == NULL || t->contact_width == NULL) {
         return fault_no_memory(f);
     }
     find_touches(t, p, near);
@@ -418,6 +443,42 @@ static status read_columns(recorded_trace *t, const csv_table *table,
     return STATUS_OK;
 }
 
+// Writes the headings of the columns that are taken, and of those that are not.
+static void name_columns(recorded_trace *t, const csv_table *table, char *const *columns,
+                         int count)
+{
+    // where time, command and readings stand
+    int place[CHANNELS + 2] = {0};
+    for (int c = 0; c < CHANNELS + 2; c++) {
+        const char *name = "command";
+        if (c < CHANNELS) {
+            name = signal_table[identify_signals[c]].name;
+        } else if (c > CHANNELS) {
+            name = "time";
+        }
+        const char *said = said_heading(name, columns, count);
+        if (said == NULL && c > CHANNELS) {
+            said = csv_table_clock(table);
+        }
+        place[c] = csv_table_find(table, said != NULL ? said : name);
+    }
+
+    // each heading in its list
+    for (int i = 0; i < table->columns; i++) {
+        char *list = t->not_taken;
+        for (int c = 0; c < CHANNELS + 2; c++) {
+            const bool is_read = c >= CHANNELS || t->reading[c] != NULL;
+            if (place[c] == i && is_read) {
+                list = t->taken;
+            }
+        }
+        const char *comma = list[0] != '\0' ? ", " : "";
+        text_add(list, IDENTIFY_COLUMNS, "%s%s", comma, table->headings[i]);
+    }
+    make_printable(t->taken, 0);
+    make_printable(t->not_taken, 0);
+}
+
 // Checks that the samples came at a rate that a rig can have.
 static status check_rate(const recorded_trace *t, fault *f)
 {
@@ -453,31 +514,22 @@ status identify_add_trace(identification *id, const char *file, char *const *col
     if (t->file == NULL) {
         return fault_no_memory(f);
     }
+    for (int c = 0; c < CHANNELS; c++) {
+        t->rms[c] = t->whiteness[c] = (double)NAN;
+        t->rms_unit[c] = t->explained[c] = (double)NAN;
+    }
+    t->contact_error = t->peak_error = (double)NAN;
     TRY(csv_table_read(&table, file, 2, f));
     TRY(csv_table_times(&table, said_heading("time", columns, count), p->control.rate,
                         &t->clock, &t->time, f));
     t->rows = t->table_rows = table.rows;
     TRY(read_columns(t, &table, columns, count, f));
     csv_table_left_out(&table, t->left_out, sizeof t->left_out);
+    name_columns(t, &table, columns, count);
     TRY(check_rate(t, f));
-    TRY(keep_samples(t, f));
+    TRY(keep_samples(t, p->control.rate, f));
     guess_start(t, p);
     return weigh(t, p, f);
-}
-
-double identify_rate(const recorded_trace *t, double usual)
-{
-    const sample_clock *clock = &t->clock;
-    if (clock->period == 0) {
-        return usual;
-    }
-
-    // the usual one, if it is that but for the error of the estimate
-    const double error = (3 * clock->error + ROUNDING * clock->period) * usual;
-    if (fabs(clock->period * usual - 1) <= error) {
-        return usual;
-    }
-    return 1 / clock->period;
 }
 
 // --- a run under the recorded command --------------------------------------------------
@@ -525,7 +577,7 @@ static status playback_scenario(const identification *id, const recorded_trace *
                                 scenario *made, fault *f)
 {
     const sensor_parameters *sensor = &p->sensor;
-    const double rate = identify_rate(t, p->control.rate);
+    const double rate = t->rate;
     const parameter_change changes[] = {
         {PARAMETER_INDEX(control.settings), .text = ""},
         {PARAMETER_INDEX(control.lock), .text = "none"},
@@ -735,8 +787,8 @@ static void judge_run(recorded_trace *t, const trace *run, const parameters *p,
 }
 
 // Writes the residuals of a run, recorded less computed over the deviation: of every
-// reading that is compared, then of the instants of touches, which are known to a
-// sampling period. Those after the horizon [s] are 0.
+// reading that is compared, then of the instants of touches, which lie between two
+// readings. Those after the horizon [s] are 0.
 static void compare_run(const recorded_trace *t, const trace *run, const parameters *p,
                         double horizon, const double own[OWNS], double *residual)
 {
@@ -762,7 +814,8 @@ static void compare_run(const recorded_trace *t, const trace *run, const paramet
         if (t->contacts[i] > horizon) {
             *residual++ = 0;
         } else {
-            *residual++ = (at - nearest_shown(t, run, p, at)) / (period / sqrt(12));
+            const double width = t->contact_width[i];
+            *residual++ = (at - nearest_shown(t, run, p, at)) / (width / sqrt(12));
         }
     }
 }

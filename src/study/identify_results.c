@@ -57,6 +57,15 @@ json_t *identify_traces_json(const identification *id)
         const recorded_trace *t = &id->traces[k];
         json_t *line = json_object(), *channels = json_array();
         json_put(line, "file", json_text(t->file));
+        json_members(
+            line,
+            "columns:t not_taken:t left_out:t rows:i samples:i begin_s:n "
+            "length_s:n steady:b rate_Hz:n stamp_scatter_s:n missing_samples:i gaps:i "
+            "longest_gap_s:n",
+            t->taken, t->not_taken, t->left_out, (int)t->table_rows, (int)t->rows,
+            t->begin, t->time[t->rows - 1], t->clock.period > 0, t->rate,
+            t->clock.scatter, (int)t->clock.missing, (int)t->clock.gaps,
+            t->clock.longest);
         for (int own = 0; own < OWNS; own++) {
             json_put(line, own_keys[own], json_number(t->own[own]));
         }
@@ -64,17 +73,28 @@ json_t *identify_traces_json(const identification *id)
                      t->contact_count, t->contact_error, 100 * t->peak_error);
         for (int c = 0; c < CHANNELS; c++) {
             if (t->reading[c] != NULL) {
+                const size_t *uses = t->uses[c];
                 json_add(channels,
                          json_of("signal:t rms:n explained:n rms_over_deviation:n "
-                                 "whiteness:n",
+                                 "whiteness:n compared:i missing:i near_touch:i "
+                                 "without_contact:i at_range:i",
                                  signal_table[identify_signals[c]].name, t->rms_unit[c],
-                                 t->explained[c], t->rms[c], t->whiteness[c]));
+                                 t->explained[c], t->rms[c], t->whiteness[c],
+                                 (int)uses[READING_COMPARED], (int)uses[READING_MISSING],
+                                 (int)uses[READING_NEAR_TOUCH],
+                                 (int)uses[READING_WITHOUT_CONTACT],
+                                 (int)uses[READING_AT_RANGE]));
             }
         }
         json_put(line, "residuals", channels);
         json_add(traces, line);
     }
     return traces;
+}
+
+json_t *identify_preview_json(const identification *id)
+{
+    return json_of("scenario:t traces:o", id->base->name, identify_traces_json(id));
 }
 
 // What the model lacks, as far as the data show it; null where they do not.

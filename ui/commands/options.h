@@ -126,6 +126,7 @@ typedef struct arguments {
     option_list besides;              // --beside
     option_list data, fits, headings; // of identify: --data, --fit, --column
     const char *validate, *cases;     // of identify
+    bool preview;                     // of identify: its traces only
     const char *links;                // of identify, "2,4,8"
     const char *noise;                // of identify, NULL: the scenario's
     uint64_t starts;                  // of identify, 0 if not given

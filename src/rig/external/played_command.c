@@ -2,31 +2,11 @@
 // each sample by its time.
 #include "src/rig/external/played_command.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
 #include "src/rig/controller_values.h"
-
-#define CLOCK_ERROR 1e-3 // relative, of a recorder's clock
-
-// Corrects the times of a recording by the rig's clock where its samples came at the
-// rig's rate, or so many to a sample, but for the error of its own clock.
-static void correct_clock(played_command *p, const sample_clock *clock, double rate)
-{
-    if (clock->period == 0) {
-        return;
-    }
-    const double rows_a_sample = floor(1 / (rate * clock->period) + 0.5);
-    const double factor = 1 / (rate * clock->period * rows_a_sample);
-    if (rows_a_sample < 1 || fabs(factor - 1) > CLOCK_ERROR) {
-        return;
-    }
-    for (size_t i = 1; i < p->rows; i++) {
-        p->times[i] = p->times[0] + factor * (p->times[i] - p->times[0]);
-    }
-}
 
 status played_command_open(played_command *p, const parameters *known, fault *f)
 {
@@ -51,7 +31,10 @@ status played_command_open(played_command *p, const parameters *known, fault *f)
 
     // a file with faults is a scenario with faults
     if (code == STATUS_OK) {
-        correct_clock(p, &clock, control->rate);
+        const double correction = sample_clock_correction(&clock, control->rate);
+        for (size_t i = 1; i < p->rows; i++) {
+            p->times[i] = p->times[0] + correction * (p->times[i] - p->times[0]);
+        }
         p->ahead = (1 / control->rate - control->jitter) / 2;
         if (clock.period > 0) {
             p->ahead = smaller(p->ahead, clock.period / 2);

@@ -12,6 +12,8 @@
 #include "ui/commands/progress.h"
 #include "ui/commands/results.h"
 
+#define SHORTEST 1e-9 // time that is told [s]
+
 enum { MOST_LINKS_COMPARED = 8, MOST_LINKS = 64 };
 
 // What other numbers of links make of the same data.
@@ -171,6 +173,66 @@ static json_t *fit_json(const void *found)
                         identify_traces_json(&o->validation));
 }
 
+// What a trace has before any fit: its samples and their clock, its columns, and what of
+// its readings is compared.
+static void print_trace_read(const recorded_trace *t, const char *what)
+{
+    say("  %s %s: %zu samples in %.6g s", what, t->file, t->rows, t->time[t->rows - 1]);
+    if (fabs(t->begin) > SHORTEST) {
+        say(", from %.12g s on", t->begin);
+    }
+    if (t->clock.period > 0) {
+        say(", at %.7g Hz", 1 / t->clock.period);
+        if (fabs(t->rate * t->clock.period - 1) > SHORTEST) {
+            say(", taken for %.7g Hz", t->rate);
+        }
+    } else {
+        say(", at no steady rate, commands at %.7g Hz", t->rate);
+    }
+    if (t->clock.scatter > SHORTEST) {
+        say(", stamps off by %.2g us", 1e6 * t->clock.scatter);
+    }
+    if (t->clock.missing > 0) {
+        say("; %zu samples missing, the longest gap %.3g ms", t->clock.missing,
+            1e3 * t->clock.longest);
+    }
+
+    // rows and columns
+    say("\n    columns %s", t->taken);
+    if (t->not_taken[0] != '\0') {
+        say("; not taken: %s", t->not_taken);
+    }
+    say("\n");
+    if (t->table_rows > t->rows) {
+        say("    %zu rows, of which those of one sample count once\n", t->table_rows);
+    }
+    if (t->left_out[0] != '\0') {
+        say("    %s\n", t->left_out);
+    }
+
+    // readings
+    for (int c = 0; c < CHANNELS; c++) {
+        if (t->reading[c] == NULL) {
+            continue;
+        }
+        say("    %zu of %s compared", t->uses[c][READING_COMPARED],
+            signal_table[identify_signals[c]].name);
+        for (int use = READING_COMPARED + 1; use < READING_USES; use++) {
+            if (t->uses[c][use] > 0) {
+                say(", %zu %s", t->uses[c][use], identify_uses[use]);
+            }
+        }
+        say("\n");
+    }
+}
+
+static void print_traces_read(const identification *id, const char *what)
+{
+    for (int k = 0; k < id->trace_count; k++) {
+        print_trace_read(&id->traces[k], what);
+    }
+}
+
 // A parameter with its error and interval, as far as these are known.
 static void print_fitted_parameter(const fitted_parameter *fit, bool is_judged)
 {
@@ -268,6 +330,9 @@ static void print_fit(const void *found)
     const identification *id = &o->fit;
     const bool is_judged = !isnan(id->aic);
     say_title(o->scenario);
+    say("\n");
+    print_traces_read(id, "trace");
+    print_traces_read(&o->validation, "validation");
     say("\n  %-26s %12s %12s   %s\n", "parameter", "value", "error", "95 % interval");
     for (int i = 0; i < id->count; i++) {
         print_fitted_parameter(&id->fit[i], is_judged);
@@ -376,6 +441,23 @@ static const command_results fit_results = {.json = fit_json,
                                             .output = write_fitted_scenario,
                                             .cases = write_drawn_arms};
 
+static json_t *preview_json(const void *found)
+{
+    const fit_outcome *o = found;
+    return identify_preview_json(&o->fit);
+}
+
+static void print_preview(const void *found)
+{
+    const fit_outcome *o = found;
+    say_title(o->scenario);
+    say("\n");
+    print_traces_read(&o->fit, "trace");
+}
+
+static const command_results preview_results = {.json = preview_json,
+                                                .text = print_preview};
+
 // Writes what an interrupt leaves, and says what that is. Returns the exit status.
 static int report_stopped_fit(const arguments *a, const fit_outcome *o)
 {
@@ -395,7 +477,7 @@ static int report_stopped_fit(const arguments *a, const fit_outcome *o)
 // The command: fits the parameters to the traces, and judges the fit.
 static int fit_and_report(const arguments *a, scenario *s)
 {
-    if (a->data.count == 0 || a->fits.count == 0) {
+    if (a->data.count == 0 || (a->fits.count == 0 && !a->preview)) {
         return complain("identify needs a recorded trace, --data FILE.csv, and what is "
                         "to be found, --fit PATH");
     }
@@ -404,6 +486,10 @@ static int fit_and_report(const arguments *a, scenario *s)
     if (read_links(a->links, &o.compared, &f) != STATUS_OK ||
         read_fit(a, s, &o.fit, &f) != STATUS_OK) {
         return complain_fault(&f);
+    }
+
+    if (a->preview) {
+        return write_results(a, &preview_results, &o, true);
     }
 
     // the number of runs is not known before they are through
@@ -432,6 +518,8 @@ static const option_row rows[] = {
     OPTION(PARAMETERS, "column", "SIGNAL=HEADER[unit]",
            "where a trace has a signal under another heading (may be repeated)",
            PLACE(headings)),
+    OPTION(FLAG, "preview", NULL,
+           "read the traces only, and tell rows, rate, gaps and columns", PLACE(preview)),
     OPTION(FILE, "validate", "FILE.csv",
            "a trace that is not fitted, to judge the result by", PLACE(validate)),
     OPTION(TEXT, "links", "N,N,...", "fit these numbers of links too, and compare",
