@@ -92,6 +92,14 @@ export function createPlots(host, units, onSeek) {
     pen.restore();
   }
 
+  // The range of the forces, with room for the numbers of the arrows above the largest.
+  function roomAbove(plot, least, most) {
+    const [low, high] = uPlot.rangeNum(least, most, 0.1, true);
+    const lines = 13 * Math.max(1, shown.runs.length) + 10;
+    const share = lines / (plot.bbox.height / (devicePixelRatio || 1) || 190);
+    return [low, Math.max(high, low + (most - low) / Math.max(1 - share, 0.5))];
+  }
+
   // Returns where the next number has room.
   function drawArrow(plot, event, scale, line, free) {
     const pen = plot.ctx;
@@ -141,15 +149,16 @@ export function createPlots(host, units, onSeek) {
       padding: [6, RIGHT, 0, 0],
       legend: { show: false },
       cursor: { drag: { x: false, y: false }, y: false, points: { show: false } },
-      scales: { x: { time: false } },
+      scales:
+        pane === "force" ? { x: { time: false }, y: { range: roomAbove } } : { x: { time: false } },
       axes: [
         { ...axis, size: last ? 38 : 8, label: last ? "time in s" : null, labelSize: 16 },
         {
           ...axis,
           size: AXIS,
-          label: unit ? `${title} in ${unit}` : title,
+          label: unit ? `${title}, ${unit}` : title,
           labelSize: 18,
-          labelFont: "12px sans-serif",
+          labelFont: "11px sans-serif",
           values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : digits(tick, 5))),
         },
       ].map((a, i) => (i === 0 && !last ? { ...a, values: () => [] } : a)),
@@ -233,7 +242,7 @@ export function createPlots(host, units, onSeek) {
       if (i === 0) {
         host.append(lane);
       }
-      const [high, low] = width < 500 ? [190, 100] : [250, 130];
+      const [high, low] = width < 500 ? [190, 116] : [250, 136];
       const height = pane === "force" ? high : low;
       const last = i === panes.length - 1;
       const options = optionsOf(pane, runs, names, width, height + (last ? 30 : 0), last);
