@@ -62,7 +62,7 @@ static void do_shell(const char *command)
 static void write_and_unpack(const scenario *s, const char *folder)
 {
     fmu_export *e;
-    DONE(fmu_export_create(&e, s, &f));
+    DONE(fmu_export_create(&e, s, NULL, &f));
     FILE *file = fopen(formatted("%s/%s.fmu", test_folder, folder), "wb");
     assert_non_null(file);
     DONE(fmu_export_write(e, file, &f));
@@ -419,8 +419,13 @@ TEST_IN_FOLDER(what_does_not_fit_is_refused)
     KEPT_SCENARIO(s) =
         shipped_with("corrected/first-impact", "control.law=process control.command=cat");
     REFUSED(STATUS_BAD_SCENARIO, "control.law = 'process'",
-            fmu_export_create(&e, &s, &f));
+            fmu_export_create(&e, &s, NULL, &f));
     assert_null(e);
+    KEPT_SCENARIO(plain) = shipped("corrected/first-impact");
+    REFUSED(STATUS_BAD_ARGUMENT, "did you mean",
+            fmu_export_create(&e, &plain, "motor.voltage,wall.angel", &f));
+    REFUSED(STATUS_BAD_ARGUMENT, "holds from the start",
+            fmu_export_create(&e, &plain, "arm.mass", &f));
 
     const char *file = formatted("%s/long.csv", test_folder);
     KEPT_TEXT(long_text) = malloc(400000);
@@ -430,9 +435,10 @@ TEST_IN_FOLDER(what_does_not_fit_is_refused)
     KEPT_SCENARIO(played) =
         shipped_with("corrected/first-impact",
                      formatted("control.law=playback control.playback_file=%s", file));
-    REFUSED(STATUS_BAD_SCENARIO, "has room for", fmu_export_create(&e, &played, &f));
+    REFUSED(STATUS_BAD_SCENARIO, "has room for",
+            fmu_export_create(&e, &played, NULL, &f));
     unlink(file);
-    REFUSED(STATUS_CANNOT_READ, "long.csv", fmu_export_create(&e, &played, &f));
+    REFUSED(STATUS_CANNOT_READ, "long.csv", fmu_export_create(&e, &played, NULL, &f));
 }
 
 int main(int argc, char **argv)

@@ -4,7 +4,8 @@
 # mingw-w64, and FMPy's own look at an FMU, where they are there.
 #
 #     test_fmu.sh IMPACTLAB SOURCE_ROOT
-#     IMPACTLAB_FMPY    folder with FMPy's package, github.com/CATIA-Systems/FMPy/src
+#     IMPACTLAB_FMPY    folder with FMPy's package, github.com/CATIA-Systems/FMPy/src; it wants numpy, lxml,
+#                       attr and lark
 set -euo pipefail
 impactlab=$1 root=$2
 work=$(mktemp -d)
@@ -45,6 +46,13 @@ guid() { python3 -m zipfile -e "$1" guid && grep -o 'guid="[^"]*"' guid/modelDes
 "$impactlab" fmu compare/hybrid -o two.fmu -q --set control.force=2
 [ "$(guid one.fmu)" != "$(guid two.fmu)" ] || fail "two scenarios have one guid"
 
+# chosen inputs; what else may change can be tuned
+"$impactlab" fmu compare/hybrid -o two.fmu -q --inputs control.force,wall.angle
+guid two.fmu >/dev/null
+grep -o 'name="[a-z_.]*" valueReference="[0-9]*" causality="input"' guid/modelDescription.xml | cut -d'"' -f2 | tr '\n' ' ' >inputs
+[ "$(cat inputs)" = "wall.angle control.force motor_command push " ] || fail "inputs: $(cat inputs)"
+grep -q 'name="motor.stiction" valueReference="[0-9]*" causality="parameter" variability="tunable"' guid/modelDescription.xml
+
 # names and titles as people write them
 printf 'title: a "b" <c> & d\ncontrol: {law: hybrid}\nrun: {duration: 0.1 s}\n' >"a \"b\" & ü.yaml"
 "$impactlab" fmu "a \"b\" & ü.yaml" -o named.fmu -q
@@ -70,13 +78,16 @@ else
     echo "mingw-w64 is not there: the sources were not compiled for Windows"
 fi
 
+python=python3
+"$python" -c 'import numpy, lxml, attr, lark' 2>/dev/null || python=/usr/bin/python3
 if [ -n "${IMPACTLAB_FMPY:-}" ]; then
-    PYTHONPATH=$IMPACTLAB_FMPY python3 - one.fmu <<'END'
+    PYTHONPATH=$IMPACTLAB_FMPY "$python" - one.fmu two.fmu <<'END'
 import sys
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
-problems = validate_fmu(sys.argv[1])
-assert not problems, problems
+for file in sys.argv[1:]:
+    problems = validate_fmu(file)
+    assert not problems, problems
 rows = simulate_fmu(sys.argv[1], stop_time=0.5, step_size=1e-3, output=['force', 'hub_angle'])
 assert rows['force'].max() > 1, rows['force'].max()
 END

@@ -115,9 +115,10 @@ typedef struct arguments {
     char **operands;              // arguments that are not options
     int operand_count;
     bool quiet;
-    bool fitted; // --fitted
-    bool single; // --float, of export
-    bool live;   // of report
+    bool fitted;        // --fitted
+    bool single;        // --float, of export
+    const char *inputs; // of fmu, paths
+    bool live;          // of report
 
     // what is run
     option_list sets;                 // --set

@@ -1,9 +1,14 @@
 // Series of the two-link arm's motion, for LANES arms at once (a power of two; vectors
-// are those of the compiler), as LOOPS: both are given by src/engines/meson.build. The
+// are those of the compiler), as LOOPS: src/engines/meson.build gives both, else one. The
 // equations stand in taylor_order.h.
 //
 // Every operation is written out in its order (taylor_numbers.h), so all widths give the
 // same bits.
+#ifndef LOOPS
+#define LANES 1
+#define LOOPS taylor_loops_1
+#endif
+
 #include "src/engines/pair/taylor_instants.h"
 #include "src/engines/pair/taylor_order.h"
 #include "src/engines/pair/taylor_roots.h"

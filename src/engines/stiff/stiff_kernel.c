@@ -1,5 +1,9 @@
 // The loops of a step of the stiff engine, built as LOOPS once for each width of the
 // processor's vectors (src/engines/meson.build). The derivation stands in stiff_step.h.
+#ifndef LOOPS
+#define LOOPS stiff_loops_1
+#endif
+
 #include <math.h>
 
 #define FORCE_LANES 4

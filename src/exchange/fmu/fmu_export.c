@@ -94,7 +94,30 @@ static void make_guid(fmu_scenario *given)
              digest + 8, digest + 12, digest + 16, digest + 20);
 }
 
-status fmu_export_create(fmu_export **made, const scenario *s, fault *f)
+// Marks the parameters that are inputs.
+static status choose_inputs(fmu_export *e, const char *paths, fault *f)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        e->inputs[i] = paths == NULL && parameter_table[i].timed;
+    }
+    while (paths != NULL && *paths != '\0') {
+        char path[FMU_TEXT];
+        const int length = (int)strcspn(paths, ",");
+        snprintf(path, sizeof path, "%.*s", length, paths);
+        const int parameter = parameter_look_up(path, f);
+        if (parameter < 0) {
+            return STATUS_BAD_ARGUMENT;
+        }
+        FAULT_IF(!parameter_table[parameter].timed, f, STATUS_BAD_ARGUMENT,
+                 "%s cannot be an input: it holds from the start of a run", path);
+        e->inputs[parameter] = true;
+        paths += length + (paths[length] == ',');
+    }
+    return STATUS_OK;
+}
+
+status fmu_export_create(fmu_export **made, const scenario *s, const char *inputs,
+                         fault *f)
 {
     *made = NULL;
     FAULT_IF(s->action_count > FMU_ACTIONS, f, STATUS_BAD_SCENARIO,
@@ -104,7 +127,10 @@ status fmu_export_create(fmu_export **made, const scenario *s, fault *f)
     if (e == NULL) {
         return fault_no_memory(f);
     }
-    const status code = take_outside(&e->given, &s->parameters, f);
+    status code = choose_inputs(e, inputs, f);
+    if (code == STATUS_OK) {
+        code = take_outside(&e->given, &s->parameters, f);
+    }
     if (code != STATUS_OK) {
         free(e);
         return code;
@@ -240,7 +266,8 @@ static void write_description(FILE *stream, const fmu_export *e)
             names[count++] = name + FOLDER;
         }
     }
-    write_model_description(stream, &e->given, e->title, e->identifier, names, count);
+    write_model_description(stream, &e->given, e->inputs, e->title, e->identifier, names,
+                            count);
 }
 
 // Adds a text that was written to memory; closes the stream.

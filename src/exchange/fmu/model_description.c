@@ -237,16 +237,18 @@ static void write_real(FILE *stream, const parameter_info *info, double value)
     write_number(stream, "start", value);
 }
 
-// A parameter; one that may change during a run is an input.
-static void write_parameter(FILE *stream, const parameters *p, int index)
+// A parameter: an input, one that may be changed between steps, or one that may not.
+static void write_parameter(FILE *stream, const parameters *p, int index, bool is_input)
 {
-    static const char fixed[] =
-        "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"";
-    static const char input[] = "causality=\"input\" variability=\"discrete\"";
     const parameter_info *info = &parameter_table[index];
     const double value = parameter_get(p, index);
-    begin_variable(stream, info->path, index, info->timed ? input : fixed,
-                   info->description);
+    const char *kind = "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"";
+    if (is_input) {
+        kind = "causality=\"input\" variability=\"discrete\"";
+    } else if (info->timed) {
+        kind = "causality=\"parameter\" variability=\"tunable\" initial=\"exact\"";
+    }
+    begin_variable(stream, info->path, index, kind, info->description);
     switch (info->type) {
     case PARAMETER_REAL:
         write_real(stream, info, value);
@@ -311,13 +313,13 @@ static void write_inputs(FILE *stream)
 }
 
 // Writes the variables, outputs last. Returns the number of those before the outputs.
-static int write_variables(FILE *stream, const parameters *p)
+static int write_variables(FILE *stream, const parameters *p, const bool *inputs)
 {
     int before = 0;
     fputs("  <ModelVariables>\n", stream);
     for (int i = 0; i < parameter_count; i++) {
         if (fmu_shows_parameter(p, i)) {
-            write_parameter(stream, p, i);
+            write_parameter(stream, p, i, inputs[i]);
             before++;
         }
     }
@@ -359,9 +361,9 @@ static void write_head(FILE *stream, const fmu_scenario *given, const char *titl
             lab_version());
 }
 
-void write_model_description(FILE *stream, const fmu_scenario *given, const char *title,
-                             const char *identifier, const char *const *sources,
-                             int source_count)
+void write_model_description(FILE *stream, const fmu_scenario *given, const bool *inputs,
+                             const char *title, const char *identifier,
+                             const char *const *sources, int source_count)
 {
     write_head(stream, given, title);
     fprintf(stream,
@@ -383,6 +385,6 @@ void write_model_description(FILE *stream, const fmu_scenario *given, const char
     write_number(stream, "stopTime", given->parameters.run.duration);
     write_number(stream, "stepSize", given->parameters.method.step);
     fputs("/>\n", stream);
-    write_structure(stream, write_variables(stream, &given->parameters));
+    write_structure(stream, write_variables(stream, &given->parameters, inputs));
     fputs("</fmiModelDescription>\n", stream);
 }

@@ -15,15 +15,12 @@ import zlib
 
 ROOMS = ('tables arm thesis contact engines engines/newmark engines/pair engines/stiff rig '
          'rig/estimation rig/laws').split()
-FILES = '''base/chunks_plain base/csv_table base/dense base/expression base/fault base/numbers base/plain_math base/random
-    base/sha256 base/shared_array base/stop base/words predict/impact_dynamics predict/two_link rig/external/played_command
-    run/arm_run run/arm_run_events run/arm_run_forces run/arm_run_inputs run/arm_run_rows
+FILES = '''base/chunks_plain base/csv_layout base/csv_table base/csv_units base/dense base/expression base/fault base/numbers base/plain_math base/random
+    base/sample_clock base/sha256 base/shared_array base/stop base/words predict/impact_dynamics predict/two_link rig/external/played_command
+    run/saved_block run/arm_run run/arm_run_events run/arm_run_forces run/arm_run_inputs run/arm_run_rows
     run/arm_run_summary run/force_history run/force_sensed run/printed_run run/recording run/resume
     run/run_driver run/run_loop run/run_result run/trace scenario/action scenario/scenario
     exchange/fmu/fmu exchange/fmu/surroundings'''.split()
-# what src/engines/meson.build tells the compiler
-DEFINED = {'taylor_kernel.c': '#define LANES 1\n#define LOOPS taylor_loops_1\n',
-           'stiff_kernel.c': '#define LOOPS stiff_loops_1\n'}
 LICENCES = {'documentation/licenses/license.txt': 'LICENSE',
             'documentation/licenses/fmi-standard.txt': 'src/exchange/fmu/fmi2/LICENSE.txt'}
 
@@ -46,7 +43,7 @@ def flat(path, text):
     """A file as it stands in the FMU: includes without folders, in a source what goes before all."""
     text = re.sub(r'^#include "(?:[^"]*/)?([^"/]+)"', r'#include "\1"', text, flags=re.M)
     if path.suffix == '.c':
-        text = '#include "portable.h"\n' + DEFINED.get(path.name, '') + text
+        text = '#include "portable.h"\n' + text
     return text
 
 

@@ -22,7 +22,7 @@ static int export_fmu(const arguments *a, scenario *s)
 
     fmu_export *e;
     fault f = {0};
-    status code = fmu_export_create(&e, s, &f);
+    status code = fmu_export_create(&e, s, a->inputs, &f);
     if (code == STATUS_OK) {
         code = write_fmu(e, a->output, &f);
     }
@@ -37,6 +37,9 @@ static int export_fmu(const arguments *a, scenario *s)
 
 static const option_row rows[] = {
     OUTPUT_OPTION(RESULT, "FILE.fmu", "file to write to, \"-\" for the standard output"),
+    OPTION(TEXT, "inputs", "A,B",
+           "parameters that are inputs, not all that may change during a run",
+           PLACE(inputs)),
 };
 
 const command fmu_command = {
