@@ -426,6 +426,43 @@ TEST(a_light_press_is_no_touch)
     unlink(file);
 }
 
+// --- other sensors ---------------------------------------------------------------------
+
+// Either sensor of the beam's shape, alone and slower than the rig, tells the stiffness.
+TEST(the_beams_shape_alone_tells_its_stiffness)
+{
+    const char *const channels[] = {"tip_deflection", "root_strain"};
+    for (int i = 0; i < 2; i++) {
+        char file[] = "/tmp/test_identify.XXXXXX";
+        const char *fitted = formatted("sensor.%s=true sensor.%s_rate=100 wall.kind=none",
+                                       channels[i], channels[i]);
+        const scenario base = shipped_with("compare/open-loop", fitted);
+        const scenario s =
+            shipped_with("compare/open-loop", formatted("%s arm.k2=5.5", fitted));
+        KEPT_RUN(run) = run_done(&s, true);
+        FILE *stream = fdopen(mkstemp(file), "w");
+        assert_non_null(stream);
+        fprintf(stream, "time[s],command[V],%s\n", channels[i]);
+        for (int k = 0; k < 300; k++) {
+            const sample *row =
+                &run.trace.rows[trace_row_at(&run.trace, (k + 0.6) / 200)];
+            fprintf(stream, "%.17g,%.17g,%.17g\n", k / 200.0, row->command,
+                    i == 0 ? row->tip_deflection : row->root_strain);
+        }
+        assert_int_equal(fclose(stream), 0);
+
+        SCOPED(identify_finish)
+        identification id = {.base = &base, .jobs = 2, .starts = IDENTIFY_STARTS};
+        DONE(identify_add_path(&id, "arm.k2", &f));
+        DONE(identify_add_trace(&id, file, NULL, 0, &f));
+        fit(&id);
+        assert_true(id.fit[0].determined && identify_settled(&id));
+        check_close(id.fit[0].value, 5.5, 4 * id.fit[0].standard_error);
+        check_below(id.fit[0].standard_error, 0.1);
+        unlink(file);
+    }
+}
+
 // --- what the data do not say ----------------------------------------------------------
 
 TEST(one_combination_is_named)

@@ -489,3 +489,48 @@ TEST(printed_arm_feeds_the_sensors_too)
     }
     check_below(0.02, largest);
 }
+
+// --- the beam's shape
+// --------------------------------------------------------------------
+
+// Of two links of 0.5 m on a rigid hub the shape follows from the angles alone.
+TEST(shape_is_what_the_angles_say)
+{
+    RIG_RUN(run, "control.law=open-loop sensor.ideal=true sensor.tip_deflection=true "
+                 "sensor.root_strain=true sensor.root_strain_distance=0.002");
+    double largest = 0;
+    for (size_t i = 1; i < run.trace.row_count; i++) {
+        const sample *before = &run.trace.rows[i - 1], *row = &run.trace.rows[i];
+        if (row->tip_deflection != before->tip_deflection) {
+            const double bend = before->last_angle - before->hub_angle;
+            check_close(row->tip_deflection, 0.5 * sin(bend), 1e-9);
+            check_close(row->root_strain, 0.002 * bend / 0.5, 1e-9);
+            largest = fmax(largest, fabs(row->tip_deflection));
+        }
+    }
+    check_below(0.01, largest);
+}
+
+// A cantilever under a force f at its tip bends by f L^3/(3 EI), and at its root by f
+// L/EI: many links with the beam's own root come near that.
+TEST(shape_of_many_links_is_that_of_a_cantilever)
+{
+    RIG_RUN(run, "control.law=open-loop sensor.ideal=true sensor.tip_deflection=true "
+                 "sensor.root_strain=true arm.links=24 arm.hub_joint=beam "
+                 "arm.damping_ratio=0.5 arm.EI=5 run.duration=4");
+    const sample *end = &run.trace.rows[run.trace.row_count - 1];
+    check_relative(end->tip_deflection, -end->force / (3 * 5), 0.01);
+    check_relative(end->root_strain, -1e-3 * end->force * 1 / 5, 0.03);
+}
+
+// It reads when it is due, and what it read then until it is due again.
+TEST(slow_sensor_holds_what_it_read)
+{
+    sensors s = fresh_sensors(SETTINGS("sensor.tip_deflection=true", "sensor.adc_bits=0",
+                                       "sensor.tip_deflection_noise=0",
+                                       "sensor.tip_deflection_rate=50"));
+    for (int k = 0; k < 40; k++) {
+        const sensed_motion now = {.time = k * 0.005, .tip_deflection = 1e-4 * k};
+        check_close(sensors_read(&s, &now).tip_deflection, 1e-4 * (k / 4 * 4), 1e-15);
+    }
+}

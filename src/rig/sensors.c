@@ -5,11 +5,15 @@
 #include <string.h>
 
 #include "src/base/extremes.h"
+#include "src/base/instant.h"
 #include "src/base/sincos.h"
 #include "src/base/plain_math.h"
 
 // 10 % to 90 % of a first-order lag takes ln 9 time constants.
 #define RISE_OVER_TIME_CONSTANT 2.1972245773362196
+
+// Looks of a slow sensor this share of its period early are on time: rounding.
+#define SAME_LOOK 1e-6
 
 // In a stride no longer than this [s] the gain of velocity would be rounding only, and
 // the accelerometer is not moved.
@@ -80,6 +84,8 @@ static void idealise(sensor_parameters *p)
     p->piezo_rise_time = p->piezo_leak_time = p->piezo_range = p->piezo_noise = 0;
     p->film_leak_time = p->film_noise = 0;
     p->accelerometer_rise_time = p->accelerometer_range = p->accelerometer_noise = 0;
+    p->tip_deflection_noise = p->tip_deflection_rate = 0;
+    p->root_strain_noise = p->root_strain_rate = 0;
     p->encoder_gain_error = p->tachometer_gain_error = p->fsr_gain_error =
         p->piezo_gain_error = 0;
     p->encoder_offset = p->tachometer_offset = p->fsr_offset = p->piezo_offset = 0;
@@ -130,6 +136,8 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed)
     noise_start(&s->piezo_noise, 1, seed);
     noise_start(&s->film_noise, 2, seed);
     noise_start(&s->acceleration_noise, 3, seed);
+    noise_start(&s->tip_deflection.noise, 4, seed);
+    noise_start(&s->root_strain.noise, 5, seed);
 }
 
 // Moves the force that the FSR shows, with hysteresis: it follows the force with a play
@@ -346,6 +354,20 @@ static double read_accelerometer(sensors *s, const sensed_motion *now)
            p->accelerometer_gain;
 }
 
+// The reading of a sensor of `value` that looks at a rate [Hz], or with 0 always.
+static double read_slowly(sensors *s, slow_sensor *of, const sensed_motion *now,
+                          double value, double gain, double noise, double rate)
+{
+    if (instant_after(of->due, now->time)) {
+        return of->held;
+    }
+    of->held = convert(s, &of->noise, gain * value, noise) / gain;
+    if (rate > 0) {
+        of->due = (floor(now->time * rate + SAME_LOOK) + 1) / rate;
+    }
+    return of->held;
+}
+
 sensor_reading sensors_read(sensors *s, const sensed_motion *now)
 {
     const sensor_parameters *p = &s->p;
@@ -364,7 +386,9 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
                               .force_reading = read_force(s, fsr),
                               .piezo_force = (double)NAN,
                               .film = (double)NAN,
-                              .accelerometer = (double)NAN};
+                              .accelerometer = (double)NAN,
+                              .tip_deflection = (double)NAN,
+                              .root_strain = (double)NAN};
 
     // sensors that need not be fitted have noise of their own
     if (p->piezo) {
@@ -375,6 +399,18 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
     }
     if (p->accelerometer) {
         reading.accelerometer = read_accelerometer(s, now);
+    }
+    if (p->tip_deflection) {
+        reading.tip_deflection =
+            read_slowly(s, &s->tip_deflection, now, now->tip_deflection,
+                        p->tip_deflection_gain, p->tip_deflection_noise,
+                        p->tip_deflection_rate);
+    }
+    if (p->root_strain) {
+        reading.root_strain =
+            read_slowly(s, &s->root_strain, now,
+                        p->root_strain_distance * now->root_curvature,
+                        p->root_strain_gain, p->root_strain_noise, p->root_strain_rate);
     }
     return reading;
 }

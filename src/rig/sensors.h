@@ -15,6 +15,10 @@
 // wishes for. A piezoelectric force sensor rises fast, goes off scale in an impact, and
 // its charge leaks away. A piezo film shows how much the beam bends and leaks too. An
 // accelerometer on the hub has a bandwidth.
+//
+// Two are there for what is recorded, and no law is told of them: the deflection of the
+// tip and the strain at the root of the beam, each of which may look less often than the
+// rig and holds its reading in between.
 #pragma once
 
 #include <stdint.h>
@@ -29,6 +33,10 @@ typedef struct sensed_motion {
     double bending;      // last link's angle minus the first's: theta3 - theta2 [rad]
     double bending_rate; // [rad/s]
     double force;        // of contact, impulses excluded [N]
+    double time;         // [s]
+    // of the tip from the tangent to the hub [m], and of the beam at its root [1/m]; 0
+    // where no sensor is fitted that looks at them
+    double tip_deflection, root_curvature;
 } sensed_motion;
 
 // White noise of its own.
@@ -38,6 +46,13 @@ typedef struct noise_source {
     double normal[NOISE_AHEAD]; // normal numbers, drawn so many at a time
     int taken;                  // of them
 } noise_source;
+
+// A sensor without a lag that may look less often than the rig.
+typedef struct slow_sensor {
+    noise_source noise;
+    double due;  // when it looks next [s]
+    double held; // what it read when it looked last
+} slow_sensor;
 
 // An A/D or D/A converter.
 typedef struct converter {
@@ -64,6 +79,7 @@ typedef struct sensors {
         piezo_noise; // the other sensors have their own: fitting one shifts nothing
     noise_source film_noise; //
     noise_source acceleration_noise;
+    slow_sensor tip_deflection, root_strain;
     first_order_lag fsr;        // what has arrived in the FSR [N],
     double fsr_shown;           // and what its hysteresis makes of that [N]
     first_order_lag piezo_rise; // what has arrived in the piezoelectric sensor [N],
@@ -86,12 +102,14 @@ typedef struct sensors {
 // What the sensors read, under the names of the recorded signals: volts read back through
 // their nominal curves. NaN where one is not fitted.
 typedef struct sensor_reading {
-    double encoder;       // hub angle [rad]
-    double tachometer;    // hub velocity [rad/s]
-    double force_reading; // contact force, FSR [N]
-    double piezo_force;   // contact force, piezoelectric sensor [N]
-    double film;          // bending, piezo film [rad]
-    double accelerometer; // hub acceleration [rad/s2]
+    double encoder;        // hub angle [rad]
+    double tachometer;     // hub velocity [rad/s]
+    double force_reading;  // contact force, FSR [N]
+    double piezo_force;    // contact force, piezoelectric sensor [N]
+    double film;           // bending, piezo film [rad]
+    double accelerometer;  // hub acceleration [rad/s2]
+    double tip_deflection; // from the tangent to the hub [m]
+    double root_strain;    // of the beam at its root
 } sensor_reading;
 
 // Starts sensors at rest, their noise from the seed; sensor.ideal takes every

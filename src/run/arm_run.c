@@ -31,9 +31,10 @@ static bool sensed_within(const arm_run *run, double time, sensed_motion *at)
     motion *m = run->motion;
     const sensor_parameters *fitted = &run->recording->rig->sensors.p;
 
-    // film and accelerometer measure the whole arm
-    *at = (sensed_motion){.force = 0};
-    if (fitted->film || fitted->accelerometer) {
+    // some measure the whole arm
+    *at = (sensed_motion){.time = time, .force = 0};
+    if (fitted->film || fitted->accelerometer || fitted->tip_deflection ||
+        fitted->root_strain) {
         double *state = motion_between(&run->arm, m, time, STATE_WHOLE);
         if (state == NULL) {
             return false;

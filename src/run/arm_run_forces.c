@@ -4,6 +4,7 @@
 
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
+#include "src/base/sincos.h"
 #include "src/run/arm_run.h"
 #include "src/run/recording.h"
 
@@ -26,17 +27,40 @@
 
 enum { MOST_PIECES = 320 }; // that sensors follow a step in
 
+// Adds what sensors see of the beam's shape q: the tip's distance from the tangent to the
+// hub, and the curvature at the root, the bend of the first joint of the beam over the
+// length that it stands for.
+static void add_shape(const arm *a, const double *q, sensed_motion *at)
+{
+    for (int k = 0; k < a->links; k++) {
+        at->tip_deflection +=
+            arm_link_of(a, k).length * inline_sin(q[a->first + k] - q[0]);
+    }
+    if (a->root_bends) {
+        at->root_curvature = (q[1] - q[0]) / (arm_link_of(a, 0).length / 2);
+    } else if (a->links > 1) {
+        at->root_curvature = (q[a->first + 1] - q[a->first]) /
+                             ((arm_link_of(a, 0).length + arm_link_of(a, 1).length) / 2);
+    }
+}
+
 sensed_motion arm_run_sensed_motion(const arm_run *run, double *state)
 {
     const motion *m = run->motion;
     const double *q = state_angles(m, state), *w = state_velocities(m, state);
     int first = run->arm.first, last = run->arm.dof - 1;
-    return (sensed_motion){.angle = q[0],
-                           .velocity = w[0],
-                           .acceleration = state_accelerations(m, state)[0],
-                           .bending = q[last] - q[first],
-                           .bending_rate = w[last] - w[first],
-                           .force = state[SLOT_FORCE]};
+    const feature_set shape = HAS(TIP_DEFLECTION) | HAS(ROOT_STRAIN);
+    sensed_motion at = {.time = state[SLOT_TIME],
+                        .angle = q[0],
+                        .velocity = w[0],
+                        .acceleration = state_accelerations(m, state)[0],
+                        .bending = q[last] - q[first],
+                        .bending_rate = w[last] - w[first],
+                        .force = state[SLOT_FORCE]};
+    if ((run->arm.features & shape) != 0) {
+        add_shape(&run->arm, q, &at);
+    }
+    return at;
 }
 
 // The force over every step so far.

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/sincos.h"
 #include "src/run/recording.h"
 
 // --- what a step is recorded as --------------------------------------------------------
@@ -112,9 +113,15 @@ static sample present_row(const void *run)
 }
 
 // The motion that the sensors measure at a row.
-static sensed_motion sensed_at(const printed_row *row)
+static sensed_motion sensed_at(const printed_arm *a, const printed_row *row)
 {
-    return (sensed_motion){.angle = row->angle[0],
+    const double first = row->angle[1] - row->angle[0], last = row->angle[2];
+    const double l = a->link_length, bend = last - row->angle[1];
+    return (sensed_motion){.time = row->time,
+                           .tip_deflection =
+                               l * (inline_sin(first) + inline_sin(last - row->angle[0])),
+                           .root_curvature = bend / l,
+                           .angle = row->angle[0],
                            .velocity = row->velocity[0],
                            .acceleration = row->acceleration[0],
                            .bending = row->angle[2] - row->angle[1],
@@ -142,7 +149,7 @@ static status record_row(printed_run *p, fault *f)
     status failed = note_contact(p, row);
 
     // the step to this row; to the row at time 0 it has no length
-    const sensed_motion now = sensed_at(row);
+    const sensed_motion now = sensed_at(&p->motion.arm, row);
     force_step step = {.start = row->time, .end = row->time, .last = row->force};
     sensed_motion before = now;
     if (p->begun) {

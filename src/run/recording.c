@@ -283,6 +283,8 @@ void recording_add_rig_signals(const recording *r, sample *row)
     row->piezo_force = reading.piezo_force;
     row->film = reading.film;
     row->accelerometer = reading.accelerometer;
+    row->tip_deflection = reading.tip_deflection;
+    row->root_strain = reading.root_strain;
 }
 
 bool recording_has_new_sample(const recording *r)

@@ -43,6 +43,8 @@ enum {
     CHANNEL_PIEZO,
     CHANNEL_FILM,
     CHANNEL_ACCELEROMETER,
+    CHANNEL_TIP_DEFLECTION,
+    CHANNEL_ROOT_STRAIN,
     CHANNELS
 };
 extern const int identify_signals[CHANNELS]; // indices in signal_table
@@ -58,6 +60,7 @@ enum { IDENTIFY_COLUMNS = 400 }; // room for the headings of a trace
 typedef enum reading_use {
     READING_COMPARED,
     READING_MISSING,         // its field is empty
+    READING_REPEATED,        // of a sensor that has not looked again
     READING_NEAR_TOUCH,      // within IDENTIFY_GUARD of a touch or a release
     READING_WITHOUT_CONTACT, // of the FSR, which reads nothing then
     READING_AT_RANGE,        // near the end of the converter's range

@@ -24,8 +24,9 @@ enum {
 };
 
 const int identify_signals[CHANNELS] = {
-    SIGNAL_INDEX(encoder),     SIGNAL_INDEX(tachometer), SIGNAL_INDEX(force_reading),
-    SIGNAL_INDEX(piezo_force), SIGNAL_INDEX(film),       SIGNAL_INDEX(accelerometer)};
+    SIGNAL_INDEX(encoder),        SIGNAL_INDEX(tachometer), SIGNAL_INDEX(force_reading),
+    SIGNAL_INDEX(piezo_force),    SIGNAL_INDEX(film),       SIGNAL_INDEX(accelerometer),
+    SIGNAL_INDEX(tip_deflection), SIGNAL_INDEX(root_strain)};
 
 const char *const identify_uses[READING_USES] = {
     [READING_MISSING] = "missing",
@@ -252,6 +253,10 @@ static double deviation_of(const sensor_parameters *s, int channel, double *rang
         [CHANNEL_FILM] = {s->film_noise, adc.step, s->adc_range, s->film_gain},
         [CHANNEL_ACCELEROMETER] = {s->accelerometer_noise, adc.step, s->adc_range,
                                    s->accelerometer_gain},
+        [CHANNEL_TIP_DEFLECTION] = {s->tip_deflection_noise, adc.step, s->adc_range,
+                                    s->tip_deflection_gain},
+        [CHANNEL_ROOT_STRAIN] = {s->root_strain_noise, adc.step, s->adc_range,
+                                 s->root_strain_gain},
     };
     const double gain = channels[channel].gain;
     double noise = channels[channel].noise, step = channels[channel].step;
@@ -317,7 +322,8 @@ static void find_touches(recorded_trace *t, const parameters *p, unsigned char *
 // Sets the deviation of each reading of a channel and counts the readings that are
 // compared. A deviation of 0 marks those that are not: near a touch, of the FSR without
 // contact, or near the end of the range. Equal readings in a row are one reading, whose
-// deviation each of n samples has times sqrt(n), unless noise covers the steps.
+// deviation each of n samples has times sqrt(n), unless noise covers the steps; of a
+// sensor that looks less often than the rig only the first one is compared.
 static status weigh_channel(recorded_trace *t, int c, const parameters *p,
                             const unsigned char *near, fault *f)
 {
@@ -325,6 +331,9 @@ static status weigh_channel(recorded_trace *t, int c, const parameters *p,
     bool dithered;
     const double deviation = deviation_of(&p->sensor, c, &range, &dithered);
     const double *reading = t->reading[c];
+    const bool slow =
+        (c == CHANNEL_TIP_DEFLECTION && p->sensor.tip_deflection_rate > 0) ||
+        (c == CHANNEL_ROOT_STRAIN && p->sensor.root_strain_rate > 0);
     t->deviation[c] = calloc(t->rows, sizeof *t->deviation[c]);
     if (t->deviation[c] == NULL) {
         return fault_no_memory(f);
@@ -332,7 +341,7 @@ static status weigh_channel(recorded_trace *t, int c, const parameters *p,
     for (size_t i = 0, end; i < t->rows; i = end) {
         // the samples from i to before `end` are one reading
         end = i + 1;
-        while (!dithered && end < t->rows && reading[end] == reading[i]) {
+        while ((slow || !dithered) && end < t->rows && reading[end] == reading[i]) {
             end++;
         }
 
@@ -343,6 +352,8 @@ static status weigh_channel(recorded_trace *t, int c, const parameters *p,
             reading_use use = READING_COMPARED;
             if (isnan(reading[k])) {
                 use = READING_MISSING;
+            } else if (slow && k > i) {
+                use = READING_REPEATED;
             } else if (near[k]) {
                 use = READING_NEAR_TOUCH;
             } else if (!touches) {
@@ -350,7 +361,8 @@ static status weigh_channel(recorded_trace *t, int c, const parameters *p,
             } else if (!(size < range - NEAR_RANGE * deviation)) {
                 use = READING_AT_RANGE;
             } else {
-                t->deviation[c][k] = deviation * sqrt((double)(end - i));
+                const size_t shared = slow ? 1 : end - i;
+                t->deviation[c][k] = deviation * sqrt((double)shared);
                 t->residuals++;
             }
             t->uses[c][use]++;
@@ -588,11 +600,19 @@ static status playback_scenario(const identification *id, const recorded_trace *
         {PARAMETER_INDEX(sensor.piezo_noise), 0},
         {PARAMETER_INDEX(sensor.film_noise), 0},
         {PARAMETER_INDEX(sensor.accelerometer_noise), 0},
+        {PARAMETER_INDEX(sensor.tip_deflection_noise), 0},
+        {PARAMETER_INDEX(sensor.tip_deflection_rate), 0},
+        {PARAMETER_INDEX(sensor.root_strain_noise), 0},
+        {PARAMETER_INDEX(sensor.root_strain_rate), 0},
         {PARAMETER_INDEX(sensor.piezo),
          sensor->piezo || t->reading[CHANNEL_PIEZO] != NULL},
         {PARAMETER_INDEX(sensor.film), sensor->film || t->reading[CHANNEL_FILM] != NULL},
         {PARAMETER_INDEX(sensor.accelerometer),
          sensor->accelerometer || t->reading[CHANNEL_ACCELEROMETER] != NULL},
+        {PARAMETER_INDEX(sensor.tip_deflection),
+         sensor->tip_deflection || t->reading[CHANNEL_TIP_DEFLECTION] != NULL},
+        {PARAMETER_INDEX(sensor.root_strain),
+         sensor->root_strain || t->reading[CHANNEL_ROOT_STRAIN] != NULL},
         {PARAMETER_INDEX(control.law), LAW_OPEN_LOOP},
         {PARAMETER_INDEX(control.rate), rate},
         {PARAMETER_INDEX(control.jitter), 0},

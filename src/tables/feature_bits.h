@@ -55,6 +55,8 @@ enum {
     FEATURE_PIEZO,       // sensors that need not be there
     FEATURE_FILM,
     FEATURE_ACCELEROMETER,
+    FEATURE_TIP_DEFLECTION,
+    FEATURE_ROOT_STRAIN,
     FEATURE_IMPERFECT, // sensor.ideal = false
     FEATURE_RIPPLE,
     FEATURE_CHANCE,    // noise or jitter

@@ -68,7 +68,9 @@ static feature_set rig_features(const parameters *p)
     const bool noise = s->tachometer_noise > 0 || s->fsr_noise > 0 ||
                        (s->piezo && s->piezo_noise > 0) ||
                        (s->film && s->film_noise > 0) ||
-                       (s->accelerometer && s->accelerometer_noise > 0);
+                       (s->accelerometer && s->accelerometer_noise > 0) ||
+                       (s->tip_deflection && s->tip_deflection_noise > 0) ||
+                       (s->root_strain && s->root_strain_noise > 0);
     return when(c->law == LAW_NONE, HAS(NO_LAW)) | when(c->law != LAW_NONE, HAS(LAW)) |
            when(c->law == LAW_PLUGIN, HAS(PLUGIN)) |
            when(c->law == LAW_PROCESS, HAS(PROCESS)) |
@@ -76,7 +78,9 @@ static feature_set rig_features(const parameters *p)
            when(c->force_amplitude > 0, HAS(FORCE_WAVES)) |
            when(c->force_limit > 0, HAS(FORCE_LIMIT)) | when(s->piezo, HAS(PIEZO)) |
            when(s->film, HAS(FILM)) | when(s->accelerometer, HAS(ACCELEROMETER)) |
-           when(!s->ideal, HAS(IMPERFECT)) | when(s->tachometer_ripple > 0, HAS(RIPPLE)) |
+           when(s->tip_deflection, HAS(TIP_DEFLECTION)) |
+           when(s->root_strain, HAS(ROOT_STRAIN)) | when(!s->ideal, HAS(IMPERFECT)) |
+           when(s->tachometer_ripple > 0, HAS(RIPPLE)) |
            when(c->jitter > 0 || (noise && !s->ideal), HAS(CHANCE));
 }
 
@@ -220,6 +224,9 @@ static const rule rules[] = {
     {"sensor.film_*", HAS(FILM), "no piezo film is fitted (sensor.film)"},
     {"sensor.accelerometer_*", HAS(ACCELEROMETER),
      "none is fitted (sensor.accelerometer)"},
+    {"sensor.tip_deflection_*", HAS(TIP_DEFLECTION),
+     "none is fitted (sensor.tip_deflection)"},
+    {"sensor.root_strain_*", HAS(ROOT_STRAIN), "no gauge is fitted (sensor.root_strain)"},
     {"sensor.*_noise sensor.*_error sensor.*_offset sensor.*_bits sensor.*_range "
      "sensor.*_rise_time sensor.*_leak_time sensor.encoder_counts "
      "sensor.tachometer_ripple* sensor.fsr_hysteresis",

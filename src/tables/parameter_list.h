@@ -340,6 +340,22 @@ REAL(sensor, accelerometer_range, "angular acceleration beyond which it is off s
     "for no such limit", "rad/s2", 0, 1e9, DEFAULT(500))
 REAL(sensor, accelerometer_noise, "standard deviation of the accelerometer's noise",
     "V", 0, 10, DEFAULT(5e-3), TIMED)
+BOOLEAN(sensor, tip_deflection, "fits a sensor of the tip's deflection from the tangent to the "
+    "hub, such as a camera on the hub; no controller is told", DEFAULT(false))
+REAL(sensor, tip_deflection_gain, "volts of that sensor per deflection", "V/m", 1e-6, 1e6, DEFAULT(50))
+REAL(sensor, tip_deflection_noise, "standard deviation of its noise", "V", 0, 10, DEFAULT(0.01), TIMED)
+REAL(sensor, tip_deflection_rate, "how often it looks, at samples of the rig; 0: at every one",
+    "Hz", 0, 1e5, DEFAULT(0))
+BOOLEAN(sensor, root_strain, "fits a strain gauge at the root of the beam; no controller is told",
+    DEFAULT(false))
+REAL(sensor, root_strain_distance, "distance of the gauge from the neutral line: strain = distance "
+    "times curvature", "m", 1e-6, 1, DEFAULT(1e-3))
+REAL(sensor, root_strain_gain, "volts of the gauge's amplifier per strain", "V", 1e-6, 1e9,
+    DEFAULT(5000))
+REAL(sensor, root_strain_noise, "standard deviation of the gauge's noise", "V", 0, 10,
+    DEFAULT(0.01), TIMED)
+REAL(sensor, root_strain_rate, "how often it looks, at samples of the rig; 0: at every one", "Hz", 0,
+    1e5, DEFAULT(0))
 INTEGER(sensor, adc_bits, "bits of the A/D converter, 0 for a continuous one", 0, 32, DEFAULT(12))
 INTEGER(sensor, dac_bits, "bits of the D/A converter, 0 for a continuous one", 0, 32, DEFAULT(12))
 REAL(sensor, adc_range, "range of the A/D converter either way", "V", 1e-3, 1000, DEFAULT(10))

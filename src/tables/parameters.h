@@ -93,7 +93,7 @@ typedef struct parameters {
     sensor_parameters sensor;
     bool code_allowed;      // the user allows the scenario to start a program or load a
                             // plug-in; no file can allow it
-    unsigned char set[160]; // set[i] is 1 if parameter i was given, 0 if it is a default
+    unsigned char set[192]; // set[i] is 1 if parameter i was given, 0 if it is a default
 } parameters;
 
 typedef enum parameter_type {

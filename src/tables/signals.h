@@ -107,6 +107,12 @@ typedef enum signal_body {
     SIGNAL(accelerometer, "θ̈<sub>acc</sub>", "acc", "rad/s2",                            \
            "hub acceleration as the accelerometer reads it", "Hub acceleration", 0,      \
            LINE_SOLID, .needs = HAS(ACCELEROMETER))                                      \
+    SIGNAL(tip_deflection, "y<sub>tip</sub>", "ytip", "m",                               \
+           "deflection of the tip from the tangent to the hub, as its sensor reads it",  \
+           "Deflection", 2, LINE_SOLID, .needs = HAS(TIP_DEFLECTION))                    \
+    SIGNAL(root_strain, "ε<sub>root</sub>", "strain", "",                                \
+           "strain at the root of the beam, as a gauge reads it", "Strain", 4,           \
+           LINE_SOLID, .needs = HAS(ROOT_STRAIN))                                        \
     SIGNAL(command, "u", "u", "V", "command of the controller", "Command", 6,            \
            LINE_SOLID)                                                                   \
     SIGNAL(controller_mode, "mode", "mode", "",                                          \
