@@ -259,7 +259,14 @@ void recording_add_rig_signals(const recording *r, sample *row)
 {
     // before the first sample there are no values
     const double none = (double)NAN;
-    sensor_reading reading = {none, none, none, none, none, none};
+    sensor_reading reading = {.encoder = none,
+                              .tachometer = none,
+                              .force_reading = none,
+                              .piezo_force = none,
+                              .film = none,
+                              .accelerometer = none,
+                              .tip_deflection = none,
+                              .root_strain = none};
     row->command = row->controller_mode = none;
     row->desired_angle = row->desired_velocity = none;
     row->calculated_force = row->predicted_force = none;
