@@ -1,7 +1,7 @@
 #include "src/tables/signals.h"
 
 #include <assert.h>
-#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -154,10 +154,13 @@ bool signal_is_derived(int index)
 
 int signal_of_text(const char *text, fault *f)
 {
-    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    // one thread at a time takes a place, and others wait for the short while; a flag, as
+    // compilers for other systems have it without a library
+    static atomic_flag taken = ATOMIC_FLAG_INIT;
     char name[DERIVED_NAME];
     name_expression(text, name);
-    pthread_mutex_lock(&lock);
+    while (atomic_flag_test_and_set(&taken)) {
+    }
     int index = signal_find_any(name), place = 0;
 
     // the first place that no expression has had
@@ -170,7 +173,7 @@ int signal_of_text(const char *text, fault *f)
     } else if (index < 0) {
         index = signal_derive(place, text, f);
     }
-    pthread_mutex_unlock(&lock);
+    atomic_flag_clear(&taken);
     return index;
 }
 
