@@ -21,7 +21,7 @@ libraries=($(pkg-config --libs yaml-0.1 jansson sqlite3) -ldl -lm -lpthread)
 
 # what a run needs: the library below the studies, which make many runs or time them, and its own
 # interface above
-mapfile -t sources < <(find src tests/optimisation_runs.c -name '*.c' | grep -Ev '^src/(api|study|exchange)/' | sort)
+mapfile -t sources < <(find src tests/optimisation_runs.c -name '*.c' | grep -Ev '^src/(api|study|exchange)/|_plain\.c$' | sort)
 # the engines' kernels are compiled once for each width (src/engines/meson.build): SOURCE@WIDTH
 units=()
 for source in "${sources[@]}"; do

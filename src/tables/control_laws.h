@@ -3,7 +3,7 @@
 // of src/rig/laws/laws.h, the rig's table of controllers and the manual.
 #pragma once
 
-#include <stdint.h>
+#include "src/tables/feature_bits.h"
 
 // Each law: name in the enumeration below, prefix of the controller (hybrid: hybrid_law),
 // word in scenarios; what it reads of belief.* (src/tables/feature_bits.h), and what
@@ -80,11 +80,11 @@ typedef enum control_law {
     "none" CONTROL_LAWS(CONTROL_LAW_WORD) "|plugin|process|playback"
 
 typedef struct control_law_info {
-    const char *word;                      // in scenarios
-    const char *description;               // one line without a full stop
-    const char *needs, *sensors, *fails;   // of a built-in law, likewise
-    uint64_t told, told_where_force_moves; // features of belief.* that it reads
-    const char *ignored;                   // of its parameters, " NAME NAME "; "": none
+    const char *word;                         // in scenarios
+    const char *description;                  // one line without a full stop
+    const char *needs, *sensors, *fails;      // of a built-in law, likewise
+    feature_set told, told_where_force_moves; // features of belief.* that it reads
+    const char *ignored; // of its parameters, " NAME NAME "; "": none
 } control_law_info;
 
 // Indexed by control_law.

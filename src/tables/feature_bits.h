@@ -2,7 +2,6 @@
 #pragma once
 
 #include <stdbool.h>
-#include <stdint.h>
 
 #include "src/tables/force_list.h"
 
@@ -73,9 +72,10 @@ enum {
     FEATURE_COUNT
 };
 
-typedef uint64_t feature_set;
+// Two words of bits, which gcc and clang have as one number.
+__extension__ typedef unsigned __int128 feature_set;
 #define HAS(name) ((feature_set)1 << FEATURE_##name)
-_Static_assert(FEATURE_COUNT <= 64, "a feature has a bit of a feature_set");
+_Static_assert(FEATURE_COUNT <= 128, "a feature has a bit of a feature_set");
 
 // The forces of force_list.h.
 #define FORCE_BIT(feature, ...) | HAS(feature)
