@@ -55,6 +55,7 @@ TEST(a_table_is_read_however_it_is_written)
         "time_ms,v_V,note\n0,1.5,begin\n500,-2,\n1000,2500,\"a, b\"\n",
         "t/s,V/kV,v/V\r0,7,1.5\r0.5,7,-2\r1,7,2500\r",
         "\xEF\xBB\xBFTIME[us],V[V]\n0,1.5\n5e5,-2\n1e6,2500\n,,\n",
+        "sample v\n# mV\n0 1500\n1 -2000\n2 2.5e6\n",
         "time_s,v_V,speed_rad/s\n0,1.5,1\n0.5,-2,1\n1,2500,1\n",
         "sample,v\n0,1.5\n1,-2\n2,2500\n",
         "time[#],v\n0,1.5\n1,-2\n2,2500\n",

@@ -341,12 +341,16 @@ static size_t skip_comments(const file_rows *r, size_t row)
     return row;
 }
 
-// Whether units stand below a row of headings, maybe as a comment: for each of them.
+// Whether units stand below a row of headings, for each of them, maybe as a comment,
+// whose sign then may be the first one.
 static bool has_units_below(const file_rows *r, size_t headings)
 {
     const size_t below = headings + 1;
-    return below < r->count && has_units(r, below) &&
-           fields_of(r, below) == fields_of(r, headings);
+    if (below == r->count || !has_units(r, below)) {
+        return false;
+    }
+    const int lacking = fields_of(r, headings) - fields_of(r, below);
+    return lacking == 0 || (lacking == 1 && r->comment[below]);
 }
 
 // The row of data that follows a row of headings and their units.
@@ -398,14 +402,14 @@ static size_t find_headings(const file_rows *r)
     return r->count;
 }
 
-// Copies a row's texts, to be freed; NULL without memory.
-static char **copy_row(const file_rows *r, size_t row, int columns)
+// Copies a row's texts from column `first` on, to be freed; NULL without memory.
+static char **copy_row(const file_rows *r, size_t row, int first, int columns)
 {
     char **copy = calloc((size_t)columns + 1, sizeof *copy);
     for (int i = 0; copy != NULL && i < columns; i++) {
         copy[i] = (char *)"";
-        if (i < fields_of(r, row)) {
-            copy[i] = r->fields[r->begin[row] + (size_t)i];
+        if (i >= first && i - first < fields_of(r, row)) {
+            copy[i] = r->fields[r->begin[row] + (size_t)(i - first)];
         }
     }
     return copy;
@@ -505,12 +509,13 @@ static status make_table(csv_table *t, const file_rows *r, bool cut, fault *f)
            r->fields[r->begin[headings] + (size_t)t->columns - 1][0] == '\0') {
         t->columns--;
     }
-    t->headings = copy_row(r, headings, t->columns);
+    t->headings = copy_row(r, headings, 0, t->columns);
 
     // a row of units
     bool room = t->headings != NULL;
     if (has_units_below(r, headings)) {
-        t->units = copy_row(r, headings + 1, t->columns);
+        const int first = fields_of(r, headings) - fields_of(r, headings + 1);
+        t->units = copy_row(r, headings + 1, first, t->columns);
         room = room && t->units != NULL;
     }
     if (!room) {
