@@ -319,7 +319,7 @@ static summary play(const mutation *m)
         "control.law=playback control.playback_file=%s control.rate=%d "
         "method.step=0.0005 initial.angle=-0.5 run.duration=%g arm.k2=5.3 "
         "motor.viscous_friction=0.007 control.playback_shift=%.17g",
-        recording_csv, r->rate, r->duration, m->begin == -0.2 ? 0.2 : 0);
+        recording_csv, r->rate, r->duration, m->begin < 0 && !m->counter ? -m->begin : 0);
 }
 
 // Lays it under a run as :data does: the largest speed stands where it was recorded, to

@@ -12,6 +12,7 @@
 #include "src/study/identify.h"
 
 #define FAILED_RUN      1e3  // residual of a run that fails, in standard deviations
+#define LEAST_RATE      10.0 // of a recording that tells something of an arm [1/s]
 #define SAME_INSTANT    1e-6 // of a sampling period
 #define NEAR_RANGE      5.0  // standard deviations from the end of a converter's range
 #define LEAST_DEVIATION 1e-6 // of an ideal channel, in its unit
@@ -501,7 +502,7 @@ static status check_rate(const recorded_trace *t, fault *f)
                                t->file);
     }
     const double mean = (double)(t->rows - 1) / (t->time[t->rows - 1] - t->time[0]);
-    if (mean >= rate->minimum && mean <= rate->maximum) {
+    if (mean >= LEAST_RATE && mean <= rate->maximum) {
         return STATUS_OK;
     }
     return fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
@@ -509,7 +510,7 @@ static status check_rate(const recorded_trace *t, fault *f)
                            "to %g rows a second, with times in s or their unit in the "
                            "heading, such as time[ms]",
                            t->file, t->rows, t->time[t->rows - 1] - t->time[0],
-                           rate->minimum, rate->maximum);
+                           LEAST_RATE, rate->maximum);
 }
 
 status identify_add_trace(identification *id, const char *file, char *const *columns,
