@@ -162,7 +162,6 @@ expect 2 run first-impct
 says err "did you mean 'corrected/first-impact'?"
 expect 2 run frist-impact
 says err "did you mean 'corrected/first-impact'?"
-expect 0 --colors mono --size 80x24
 expect 2 lab --theme purple
 says err "expected dark, light or mono"
 expect 2 run no-such-file.yaml
@@ -646,9 +645,9 @@ grep -q '"determined": true' fit.json && grep -q '"standard_error"' fit.json || 
 [ -s fit.svg ] && [ "$(grep -c "^with " fit.set)" -ge 1 ] || fail "identify draws nothing or writes no cases"
 expect 0 check fit.yaml
 expect 0 robust hit.yaml --set control.force=1 --laws force-pd --over fit.set --runs 1
-printf 'time[s],command[V],encoder[rad]\n0,1,0\n0.1,1,nan\n' >bad.csv
+printf 'time[s],command[V],encoder[rad]\n0,1,0\n0.1,1,wide\n' >bad.csv
 expect 2 identify hit.yaml $rig --data bad.csv --fit arm.k2
-says err "bad.csv:3:3: 'nan'"
+says err "bad.csv:3:3: 'wide'"
 expect 2 identify hit.yaml $rig --data recorded.csv --fit arm.k2 --column 'encoder=turn[rad]'
 says err "there is no column 'turn[rad]'"
 expect 2 identify hit.yaml $rig --data recorded.csv --fit arm.links

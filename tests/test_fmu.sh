@@ -7,7 +7,7 @@
 #     IMPACTLAB_FMPY    folder with FMPy's package, github.com/CATIA-Systems/FMPy/src; it wants numpy, lxml,
 #                       attr and lark
 set -euo pipefail
-impactlab=$1 root=$2
+impactlab=$(readlink -f -- "$1") root=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "$*"; exit 1; }

@@ -196,7 +196,7 @@ part methods.json
 interrupted study follow --set control.rate=2000 --json follow.json
 says err "of 96 runs were done"
 interrupted linear compare/hybrid --vary control.kv=0.1:5:20000 --csv linear.csv --json linear.json --plot linear.svg
-there=$(grep -o '[0-9]* of 3000' err | grep -o '^[0-9]*')
+there=$(grep -o '[0-9]* of 20000' err | grep -o '^[0-9]*')
 [ "$(wc -l <linear.csv)" = $((there + 1)) ] && [ -s linear.svg ] || fail "the loops that were done are not kept"
 part linear.json
 interrupted linear compare/hybrid --set run.duration=90000 --set arm.links=8 --inject --law --csv poles.csv --json linear.json
