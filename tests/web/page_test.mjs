@@ -116,6 +116,11 @@ async function drag(page, selector, from, to, press = page.mouse) {
     await press[move](...place(from + ((to - from) * i) / 8));
   }
   await press[up]();
+
+  // the browser hands the last moves on with its next frame
+  await page.evaluate(
+    () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+  );
   await settled(page);
 }
 
