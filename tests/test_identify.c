@@ -360,7 +360,7 @@ TEST(so_they_do_in_a_closed_loop)
 // Writes what the sensors of the shipped scenario read when it runs with changes.
 static void record_shipped(char file[64], const char *changes)
 {
-    const scenario s = shipped_with("compare/open-loop", changes);
+    KEPT_SCENARIO(s) = shipped_with("compare/open-loop", changes);
     KEPT_RUN(run) = run_done(&s, true);
     snprintf(file, 64, "/tmp/test_identify.XXXXXX");
     FILE *stream = fdopen(mkstemp(file), "w");
@@ -404,7 +404,7 @@ TEST(false_minima_are_left)
                                        "arm.hub_inertia=0.002:0.02"};
     static const double values[] = {5.63, 0.0612, 0.0071};
     char file[64];
-    const scenario base = shipped("compare/open-loop");
+    KEPT_SCENARIO(base) = shipped("compare/open-loop");
     record_shipped(file, "arm.k2=5.63 motor.stiction=0.0612 arm.hub_inertia=0.0071 "
                          "control.seed=777");
     search_often(file, &base, fits, values, 3, 2000);
@@ -419,7 +419,7 @@ TEST(a_light_press_is_no_touch)
                                        "arm.hub_inertia=0.002:0.02"};
     static const double values[] = {3.174, 0.0572, 0.0143};
     char file[64];
-    const scenario base = shipped("compare/open-loop");
+    KEPT_SCENARIO(base) = shipped("compare/open-loop");
     record_shipped(file, "arm.k2=3.174 motor.stiction=0.0572 arm.hub_inertia=0.0143 "
                          "control.seed=3");
     search_often(file, &base, fits, values, 3, 2000);
@@ -436,8 +436,8 @@ TEST(the_beams_shape_alone_tells_its_stiffness)
         char file[] = "/tmp/test_identify.XXXXXX";
         const char *fitted = formatted("sensor.%s=true sensor.%s_rate=100 wall.kind=none",
                                        channels[i], channels[i]);
-        const scenario base = shipped_with("compare/open-loop", fitted);
-        const scenario s =
+        KEPT_SCENARIO(base) = shipped_with("compare/open-loop", fitted);
+        KEPT_SCENARIO(s) =
             shipped_with("compare/open-loop", formatted("%s arm.k2=5.5", fitted));
         KEPT_RUN(run) = run_done(&s, true);
         FILE *stream = fdopen(mkstemp(file), "w");
