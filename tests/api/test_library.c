@@ -529,7 +529,7 @@ TEST(rows_on_a_grid)
         check_same(rows[i * width + column], force.values[row * step]);
     }
 
-    static const double wrong[] = {0, -1, NAN, 1e-12};
+    static const double wrong[] = {0, -1, (double)NAN, 1e-12};
     for (EACH(w, wrong)) {
         check_refused(impactlab_run_grid(run, *w, NULL, 0, &count, &told), "more than 0");
     }
