@@ -18,15 +18,17 @@ TEST(laws_follow_slow_waves)
     const double waits = 2 * sin(atan(w / zero) + w * study.later / 2);
 
     // slow waves are followed; a slow wall does not turn the hub, which friction holds:
-    // the tip's stiffness k2/l^2 is all there is to feel, but for what an integral of the
-    // error moves
+    // the tip's stiffness k2/l^2 is all there is to feel
     for (int k = 0; k < FOLLOW_LAWS; k++) {
         check_close(study.points[k][2].gain, 1, 0.15);
         check_close(study.points[k][2].phase, 0, 6);
         check_below(study.points[k][2].error, 0.5 * waits);
         check_below(study.points[k][1].error, 0.06);
+
+        // the integral of touch moves the hub a little
+        const double most = strcmp(follow_laws[k], "touch") == 0 ? 0.1 : 0.08;
         if (strcmp(follow_laws[k], "admittance") != 0) {
-            check_relative(study.points[k][0].shaken, 4.92 / 0.25, 0.1);
+            check_relative(study.points[k][0].shaken, 4.92 / 0.25, most);
         }
         for (int i = 1; i < FOLLOW_FREQUENCIES; i++) {
             check_below(fabs(study.points[k][i].phase - study.points[k][i - 1].phase),

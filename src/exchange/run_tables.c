@@ -211,7 +211,7 @@ status run_tables_open(run_tables **opened, const scenario *s,
 static status end_mat(run_tables *t, fault *f)
 {
     const int count = t->columns.count;
-    SCOPED(free_kept) char *yaml = scenario_note(t->scenario);
+    SCOPED(free_kept) char *yaml = scenario_as_text(t->scenario);
     run_table *to = &t->tables[TABLE_MAT];
     SCOPED(free_kept) const char **names = calloc((size_t)count, sizeof *names);
     SCOPED(free_kept) const char **units = calloc((size_t)count, sizeof *units);

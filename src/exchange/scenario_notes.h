@@ -4,9 +4,5 @@
 #include "src/exchange/parquet_file.h"
 #include "src/scenario/scenario.h"
 
-// The scenario as a file that reads back, to be freed; NULL, noted (text_stream.h),
-// without memory.
-char *scenario_note(const scenario *s);
-
 // Ends a Parquet file with the notes impactlab.version and impactlab.scenario.
 void parquet_end_with_scenario(parquet_file *p, const scenario *s);

@@ -192,6 +192,9 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room);
 // written: with other parameters it would not hold. Errors stay in the stream.
 void scenario_write(FILE *stream, const scenario *s);
 
+// The same as a text, to be freed; NULL, noted (text_stream.h), without memory.
+char *scenario_as_text(const scenario *s);
+
 // Gives the scenario other parameters, changed but not yet resolved: resolves them and
 // checks that its script goes with them. If that fails nothing changes and f says why.
 status scenario_take_parameters(scenario *s, const parameters *changed, fault *f);

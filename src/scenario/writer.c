@@ -5,6 +5,7 @@
 #include "src/tables/summary.h"
 #include "src/scenario/scenario.h"
 #include "src/base/numbers.h"
+#include "src/base/text_stream.h"
 #include "src/base/words.h"
 
 // The escape sequence of the character at c, if YAML would read that as the end of a line
@@ -265,4 +266,16 @@ void scenario_write(FILE *stream, const scenario *s)
     write_parameters(stream, &s->parameters);
     write_actions(stream, s);
     write_lesson(stream, s);
+}
+
+char *scenario_as_text(const scenario *s)
+{
+    text_stream text;
+    char *written = NULL;
+    if (text_stream_open(&text)) {
+        scenario_write(text.stream, s);
+        written = text_stream_close(&text, NULL);
+    }
+    loss_unless(written != NULL);
+    return written;
 }

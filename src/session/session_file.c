@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
-#include "src/base/text_stream.h"
 #include "src/base/input_file.h"
 #include "src/rig/rig.h"
 #include "src/scenario/outside.h"
@@ -20,13 +19,7 @@ enum { MOST_BYTES = 16 << 20, MOST_INPUTS = 20000 };
 // Writes a scenario's name, then its text with "| " before each line.
 static void write_base(FILE *stream, const scenario *s)
 {
-    text_stream text;
-    char *whole = NULL;
-    if (text_stream_open(&text)) {
-        scenario_write(text.stream, s);
-        whole = text_stream_close(&text, NULL);
-    }
-    loss_unless(whole != NULL);
+    char *whole = scenario_as_text(s);
     fprintf(stream, "scenario: %s\n", s->name);
     if (whole == NULL) {
         return;

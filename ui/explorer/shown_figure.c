@@ -5,7 +5,6 @@
 
 #include "render/plot/trace_plot.h"
 #include "src/base/numbers.h"
-#include "src/base/text_stream.h"
 #include "ui/explorer/explorer.h"
 
 // A recipe that is being written.
@@ -110,13 +109,7 @@ static void write_pair(const shown_recipe *r, const char *before, double a, doub
 // A scenario's text, a block of lines.
 static void write_scenario_text(const shown_recipe *r, const scenario *s)
 {
-    text_stream text;
-    char *whole = NULL;
-    if (text_stream_open(&text)) {
-        scenario_write(text.stream, s);
-        whole = text_stream_close(&text, NULL);
-    }
-    loss_unless(whole != NULL);
+    char *whole = scenario_as_text(s);
     fputs("    scenario: |\n", r->stream);
     for (char *rest = whole, *line; whole != NULL && *rest != '\0';) {
         line = strsep(&rest, "\n");
