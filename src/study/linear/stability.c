@@ -118,8 +118,10 @@ status linear_survey_begin(linear_survey *y, const scenario *s,
 status linear_survey_make(linear_survey *y, linear_place place, run_monitor *monitor,
                           fault *f)
 {
-    for (; y->done < y->sweep.run_count; y->done++) {
+    // what the monitor has counted is done, even where it stops the survey then
+    while (y->done < y->sweep.run_count) {
         TRY(survey_one(y, y->done, place, f));
+        y->done++;
         run_monitor_count(monitor);
         FAULT_IF(run_monitor_stops(monitor), f, STATUS_STOPPED, "%s",
                  status_text(STATUS_STOPPED));
