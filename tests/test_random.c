@@ -144,3 +144,84 @@ TEST(all_permutations_are_equally_likely)
         check_close(counts[i / 3][i % 3], 3000, 5 * sqrt(9000 * 2.0 / 9));
     }
 }
+
+TEST(numbers_of_a_sequence_are_found_by_their_place)
+{
+    uint64_t counter = 1234567;
+    for (uint64_t i = 0; i < 4; i++) {
+        assert_true(random_at(1234567, i) == splitmix64_next(&counter));
+    }
+}
+
+// Of as many as there may be, too: a place has one number, whichever were asked before.
+TEST(an_order_by_number_has_every_place_once)
+{
+    enum { MOST = 400 };
+    for (uint64_t count = 1; count <= MOST; count++) {
+        bool taken[MOST] = {false};
+        for (uint64_t i = 0; i < count; i++) {
+            const uint64_t place = random_place(count, i, count);
+            assert_true(place < count);
+            assert_false(taken[place]);
+            taken[place] = true;
+        }
+    }
+    const uint64_t most = UINT64_C(1) << 53;
+    for (uint64_t i = most - 1000; i < most; i++) {
+        assert_true(random_place(7, i, most) < most);
+    }
+}
+
+// Orders of three and of four numbers, whose frequencies a chi-square of 5 and of 23
+// degrees of freedom judges: above 25.7 and 56.0 once in 1e4 times.
+TEST(all_orders_by_number_are_equally_likely)
+{
+    enum { ORDERS = 24000 };
+    for (uint64_t count = 3; count <= 4; count++) {
+        int met[256] = {0};
+        for (uint64_t key = 0; key < ORDERS; key++) {
+            uint64_t order = 0;
+            for (uint64_t i = 0; i < count; i++) {
+                order = order << 2 | random_place(key, i, count);
+            }
+            met[order]++;
+        }
+
+        const double expected = count == 3 ? ORDERS / 6.0 : ORDERS / 24.0;
+        double chi_square = 0;
+        int different = 0;
+        for (int i = 0; i < 256; i++) {
+            different += met[i] > 0;
+            if (met[i] > 0) {
+                chi_square += (met[i] - expected) * (met[i] - expected) / expected;
+            }
+        }
+        assert_int_equal(different, count == 3 ? 6 : 24);
+        check_below(chi_square, count == 3 ? 25.7 : 56.0);
+    }
+}
+
+// The place says nothing about the number, nor about the place of the next one: counts
+// of pairs by tenths of both, of 81 degrees of freedom, above 138 once in 1e4 times.
+TEST(places_of_a_large_order_are_independent)
+{
+    enum { COUNT = 100000 };
+    int with_number[10][10] = {{0}}, with_next[10][10] = {{0}};
+    uint64_t before = 0;
+    for (uint64_t i = 0; i < COUNT; i++) {
+        const uint64_t place = random_place(11, i, COUNT);
+        with_number[i * 10 / COUNT][place * 10 / COUNT]++;
+        with_next[before * 10 / COUNT][place * 10 / COUNT]++;
+        before = place;
+    }
+    double of_number = 0, of_next = 0;
+    const double expected = COUNT / 100.0;
+    for (int i = 0; i < 100; i++) {
+        const double a = with_number[i / 10][i % 10] - expected,
+                     b = with_next[i / 10][i % 10] - expected;
+        of_number += a * a / expected;
+        of_next += b * b / expected;
+    }
+    check_below(of_number, 138);
+    check_below(of_next, 138);
+}

@@ -171,7 +171,8 @@ static char *judged(robust_law *found, int law, size_t runs, int jobs, int count
     KEPT_SWEEP(s);
     KEPT_STORE(store);
     sweep_progress progress;
-    scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
+    scenario base = {.name = "test",
+                     .parameters = rig_parameters_with("run.duration=1.5")};
     base.parameters.control.law = law;
     base.parameters.set[PARAMETER_INDEX(control.law)] = 1; // a default would come back
     sweep_request request = {.vary = lines,
@@ -289,7 +290,7 @@ TEST(threads_change_nothing)
 TEST(one_run_is_all_its_quantiles)
 {
     JUDGED(found, LAW_HYBRID, 1, 1, 1, ((char *const[]){"wall.kind=point"}));
-    summary s = rig_summary_with("control.law=hybrid run.duration=1");
+    summary s = rig_summary_with("control.law=hybrid run.duration=1.5");
     for (int i = 0; i < ROBUST_QUANTILES; i++) {
         check_relative(found.overshoot[i],
                        100 * s.force_over_command_N / s.force_command_N, 1e-12);

@@ -34,10 +34,14 @@ static inline uint64_t random_bits(random_generator *g)
     return result;
 }
 
-// A number evenly distributed over [0, 1), a multiple of 2^-53.
+// 64 random bits as a number evenly distributed over [0, 1), a multiple of 2^-53.
+static inline double random_share(uint64_t bits)
+{
+    return (double)(bits >> 11) * 0x1p-53;
+}
 static inline double random_uniform(random_generator *g)
 {
-    return (double)(random_bits(g) >> 11) * 0x1p-53;
+    return random_share(random_bits(g));
 }
 
 // A whole number evenly distributed over 0 ... bound - 1; bound > 0.
@@ -46,3 +50,13 @@ uint64_t random_below(random_generator *g, uint64_t bound);
 // Fills order[0 ... count - 1] with the numbers 0 ... count - 1 in random order, every
 // order equally likely (Fisher and Yates).
 void random_permutation(random_generator *g, size_t *order, size_t count);
+
+// --- by number, without those before ---------------------------------------------------
+
+// Number i, from 0, of the splitmix64 sequence of a key.
+uint64_t random_at(uint64_t key, uint64_t i);
+
+// The place of number i < count <= 2^53 in the random order of 0 ... count - 1 that a key
+// gives: a generalised Feistel network with cycle walking (Black and Rogaway, Ciphers
+// with arbitrary finite domains, CT-RSA 2002).
+uint64_t random_place(uint64_t key, uint64_t i, uint64_t count);

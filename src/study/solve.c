@@ -94,7 +94,7 @@ status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fa
 
     // a study of one run with any value of the range
     double any = (double)NAN;
-    const sweep study = {s, {*axis}, 1, SWEEP_RANDOM, .run_count = 1, .drawn = &any};
+    const sweep study = {s, {*axis}, 1, SWEEP_RANDOM, .run_count = 1, .chosen = &any};
     return sweep_check_effect(&study, 0, f);
 }
 

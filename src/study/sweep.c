@@ -76,35 +76,6 @@ static status add_axis(sweep *s, const char *given, fault *f)
 
 // --- which values a run has ------------------------------------------------------------
 
-// Latin hypercube (McKay, Beckman and Conover 1979): for each parameter its range falls
-// into run_count parts of equal chance, which the runs take in random order, each at a
-// random place.
-static status draw_latin(sweep *s, random_generator *g, fault *f)
-{
-    SCOPED(free_kept) size_t *part = malloc(s->run_count * sizeof *part);
-    SCOPED(free_kept) double *share = malloc(s->run_count * sizeof *share);
-    if (!(part != NULL && share != NULL)) {
-        return fault_no_memory(f);
-    }
-    for (int i = 0; i < s->axis_count; i++) {
-        if (!s->axes[i].together) {
-            random_permutation(g, part, s->run_count);
-        }
-        for (size_t run = 0; run < s->run_count; run++) {
-            if (!s->axes[i].together) {
-                const double u =
-                    ((double)part[run] + random_uniform(g)) / (double)s->run_count;
-                // the sum may round up to the next part
-                const double above = (double)(part[run] + 1) / (double)s->run_count;
-                share[run] = fmin(u, nextafter(above, 0));
-            }
-            s->drawn[run * (size_t)s->axis_count + (size_t)i] =
-                sweep_axis_value_at(&s->axes[i], share[run]);
-        }
-    }
-    return STATUS_OK;
-}
-
 // Sets the number of runs: as many as are asked for, or as the grid has points.
 static status count_runs(sweep *s, size_t runs, fault *f)
 {
@@ -133,44 +104,38 @@ static status count_runs(sweep *s, size_t runs, fault *f)
     return STATUS_OK;
 }
 
-// The values of random sampling, all at once, so that they do not depend on the order of
-// the runs.
-static status draw_samples(sweep *s, fault *f)
+// Where in the range of an axis the value of a run is drawn, 0 <= share < 1: by the
+// number of the run, so that no other run need be drawn. Of a Latin hypercube (McKay,
+// Beckman and Conover 1979) each range falls into run_count parts of equal chance, which
+// the runs take in random order, each at a random place.
+static double drawn_share(const sweep *s, size_t run, int axis)
 {
-    random_generator g;
-    if (s->sampling == SWEEP_GRID) {
-        return STATUS_OK;
-    }
-    s->drawn = malloc(s->run_count * (size_t)s->axis_count * sizeof *s->drawn);
-    if (s->drawn == NULL) {
-        return fault_no_memory(f);
+    // drawn together: at the share of the axis before
+    while (s->axes[axis].together) {
+        axis--;
     }
 
-    // the same seed gives the same values
-    random_seed(&g, s->seed);
-    if (s->sampling == SWEEP_LATIN) {
-        return draw_latin(s, &g, f);
+    const uint64_t of_shares = random_at(s->seed, 2 * (uint64_t)axis),
+                   of_parts = random_at(s->seed, 2 * (uint64_t)axis + 1);
+    const double share = random_share(random_at(of_shares, run));
+    if (s->sampling == SWEEP_RANDOM) {
+        return share;
     }
 
-    // every value of every run on its own, or at the share of the one before
-    for (size_t run = 0; run < s->run_count; run++) {
-        double share = 0;
-        for (int i = 0; i < s->axis_count; i++) {
-            if (!s->axes[i].together) {
-                share = random_uniform(&g);
-            }
-            s->drawn[run * (size_t)s->axis_count + (size_t)i] =
-                sweep_axis_value_at(&s->axes[i], share);
-        }
-    }
-    return STATUS_OK;
+    // the sum may round up to the next part
+    const double part = (double)random_place(of_parts, run, s->run_count);
+    const double count = (double)s->run_count;
+    return fmin((part + share) / count, nextafter((part + 1) / count, 0));
 }
 
 double sweep_value(const sweep *s, size_t run, int axis)
 {
     assert(run < s->run_count && axis >= 0 && axis < s->axis_count);
-    if (s->drawn != NULL) {
-        return s->drawn[run * (size_t)s->axis_count + (size_t)axis];
+    if (s->chosen != NULL) {
+        return s->chosen[run * (size_t)s->axis_count + (size_t)axis];
+    }
+    if (s->sampling != SWEEP_GRID) {
+        return sweep_axis_value_at(&s->axes[axis], drawn_share(s, run, axis));
     }
 
     // a grid's last axis changes fastest
@@ -255,9 +220,6 @@ status sweep_plan(sweep *s, const sweep_request *request, fault *f)
     if (code == STATUS_OK) {
         code = count_runs(s, request->runs, f);
     }
-    if (code == STATUS_OK) {
-        code = draw_samples(s, f);
-    }
     if (code != STATUS_OK) {
         sweep_finish(s);
     }
@@ -319,6 +281,6 @@ void sweep_finish(sweep *s)
     for (int i = 0; i < s->axis_count; i++) {
         sweep_axis_finish(&s->axes[i]);
     }
-    free(s->drawn);
+    free(s->chosen);
     memset(s, 0, sizeof *s);
 }

@@ -29,8 +29,8 @@ typedef struct sweep {
     sweep_sampling sampling;
     uint64_t seed;
     size_t run_count;
-    double *drawn; // random, latin: axis_count values a run, NaN where one is still free;
-                   // NULL for a grid
+    double *chosen; // owned, axis_count values a run that a search chooses, NaN where one
+                    // is still free; NULL: the sampling gives them
     const char *chosen_by; // borrowed: by what free values are chosen, part of the
                            // definition; NULL
 } sweep;

@@ -162,7 +162,7 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     only.context = word; // of the progress line
     only.share = (sweep_share){(int)evaluation + 1, (int)t->most};
     for (size_t i = 0; i < t->each; i++) {
-        memcpy(t->plan.drawn +
+        memcpy(t->plan.chosen +
                    sweep_share_run(only.share, i) * (size_t)t->plan.axis_count,
                values, (size_t)asked->vary_count * sizeof *values);
     }
@@ -261,13 +261,18 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
                  "--vary %.200s: expected a range, %s=a:b", asked->vary[i],
                  t->plan.axes[i].name);
     }
-    for (size_t i = 0; i < request.runs * (size_t)(varied + drawn); i++) {
+    const size_t count = request.runs * (size_t)(varied + drawn);
+    t->plan.chosen = malloc(count * sizeof *t->plan.chosen);
+    if (t->plan.chosen == NULL) {
+        return fault_no_memory(f);
+    }
+    for (size_t i = 0; i < count; i++) {
         const size_t run = i / (size_t)(varied + drawn);
         const int axis = (int)(i % (size_t)(varied + drawn));
         if (axis < varied) {
-            t->plan.drawn[i] = (double)NAN;
+            t->plan.chosen[i] = (double)NAN;
         } else {
-            t->plan.drawn[i] = sweep_value(&draws, run / t->most, axis - varied);
+            t->plan.chosen[i] = sweep_value(&draws, run / t->most, axis - varied);
         }
     }
     t->plan.base = asked->base;
@@ -372,7 +377,7 @@ static double rank_of_shares(unsigned n, const double *shares, double *gradient,
         values[i] = sweep_axis_value_at(&t->plan.axes[i], share);
     }
     for (size_t e = 0; e < t->done; e++) {
-        if (memcmp(t->plan.drawn + e * (size_t)t->plan.axis_count, values,
+        if (memcmp(t->plan.chosen + e * (size_t)t->plan.axis_count, values,
                    n * sizeof *values) == 0) {
             return t->ranks[e];
         }
