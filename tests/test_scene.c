@@ -228,15 +228,120 @@ TEST(test_exaggerated)
     scene_options o = {.renderer = RENDER_CAIRO,
                        .plain = true,
                        .camera = {.kind = CAMERA_TOP}};
-    PIXELS(as_it_is) = scene_picture_of(&r, o, &peak, 1);
+    PIXELS(by_itself) = scene_picture_of(&r, o, &peak, 1);
     o.exaggerate = 1;
-    PIXELS(once) = scene_picture_of(&r, o, &peak, 1);
+    PIXELS(as_it_is) = scene_picture_of(&r, o, &peak, 1);
     o.exaggerate = 5;
     PIXELS(larger) = scene_picture_of(&r, o, &peak, 1);
-    assert_int_equal(count_different(as_it_is, once, 0), 0);
+    assert_int_equal(count_different(by_itself, larger, 0), 0);
     check_below(300, count_different(as_it_is, larger, 20));
     check_close(count_pixels(larger, count_arrow), count_pixels(as_it_is, count_arrow),
                 12);
+}
+
+// How far the curve of an arm lies from the line from hub to tip at the most, in a run
+// whose bending is enlarged [beam lengths].
+static double largest_bend(const recorded *r, double factor)
+{
+    vector joints[MOST_CURVE_LINKS + 1], curve[MOST_CURVE_POINTS];
+    const trace *t = &r->result.trace;
+    const int links = r->scenario.parameters.arm.links;
+    double bend = 0;
+    for (size_t i = 0; i < t->row_count; i++) {
+        scene_joints(t, &r->scenario.parameters, t->rows[i].time, joints);
+        scene_exaggerate(joints, links, factor);
+        const int count = scene_curve(joints, links, curve);
+        const double chord = atan2(joints[links].y, joints[links].x);
+        for (int k = 0; k < count; k++) {
+            bend = fmax(bend, fabs(curve[k].y * cos(chord) - curve[k].x * sin(chord)));
+        }
+    }
+    return bend / r->scenario.parameters.arm.length;
+}
+
+// By itself the bending is enlarged so far that it shows, and no further, however stiff
+// the arm is; a single link has none.
+TEST(test_bending_that_shows)
+{
+    for (EACH_TEXT(name, "corrected/first-impact", "corrected/stiff-beam",
+                   "corrected/twenty-links")) {
+        SCOPED(forget) recorded r = record(*name);
+        const double bend = largest_bend(&r, scene_bending_auto(&r.scenario, &r.result));
+        check_below(0.03, bend);
+        check_below(bend, 0.09);
+    }
+
+    SCOPED(forget)
+    recorded one = {.scenario = shipped_with("corrected/first-impact", "arm.links=1")};
+    DONE(run_scenario(&one.scenario, true, &one.result));
+    check_close(scene_bending_auto(&one.scenario, &one.result), 1, 0);
+}
+
+// Every word of a picture lies inside it, and the force's on no solid: where its place
+// beyond the arrow's point is taken, it goes round the point.
+TEST(test_label_stands_clear)
+{
+    enum { TAKEN = 60 };
+    const camera picture = {.width = 300, .height = 200};
+    const text_size size = {60, 20};
+    const vector point = {150, 100}, right = {1, 0};
+    taken_cells t = {0};
+    taken_begin(&t, &picture);
+    const figure_rect ahead = taken_clear_box(&t, point, right, size, &picture);
+    check_below(point.x, ahead.x);
+
+    // all that is right of the point is taken, then all but a corner
+    taken_add_box(&t, (figure_rect){150, 0, 150, 200});
+    const figure_rect aside = taken_clear_box(&t, point, right, size, &picture);
+    check_below(aside.x + aside.width, 150);
+    taken_add_box(&t, (figure_rect){0, 0, 300, 200});
+    const figure_rect none = taken_clear_box(&t, (vector){299, 1}, right, size, &picture);
+    check_below(none.x + none.width, 300);
+    check_below(0, none.y);
+    taken_finish(&t);
+}
+
+// The inset shows the contact at least twice as large, whatever the picture's size and
+// camera.
+TEST(test_inset_magnifies)
+{
+    SCOPED(forget) recorded r = record("corrected/first-impact");
+    const int sizes[][2] = {{1280, 720}, {640, 640}, {300, 900}, {669, 535}};
+    for (size_t i = 0; i < G_N_ELEMENTS(sizes); i++) {
+        for (camera_kind kind = CAMERA_THREE_QUARTER; kind <= CAMERA_SIDE; kind++) {
+            scene *sc;
+            const scene_options o = {.renderer = RENDER_CAIRO,
+                                     .camera = {.kind = kind},
+                                     .inset = true,
+                                     .samples = 1,
+                                     .width = sizes[i][0],
+                                     .height = sizes[i][1]};
+            DONE(scene_create(&sc, &r.scenario, &r.result, &o, &f));
+            const sample row = scene_shape(sc, 0.3634);
+            const vector at = scene_contact(sc, &row);
+            check_below(2 * labels_pixels(&sc->camera, at, 1),
+                        labels_pixels(&sc->tip->camera, at, 1));
+            scene_destroy(sc);
+        }
+    }
+}
+
+// In greys no pixel has a colour.
+TEST(test_mono)
+{
+    SCOPED(forget) recorded r = record("corrected/first-impact");
+    const double peak = 0.3634;
+    const scene_options o = {.renderer = RENDER_CAIRO,
+                             .inset = true,
+                             .theme = THEME_MONO};
+    PIXELS(grey) = scene_picture_of(&r, o, &peak, 1);
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 0; x < WIDTH; x++) {
+            const unsigned pixel = pixel_at(grey, x, y);
+            assert_int_equal(channel_of(pixel, 0), channel_of(pixel, 1));
+            assert_int_equal(channel_of(pixel, 1), channel_of(pixel, 2));
+        }
+    }
 }
 
 // Four samples a pixel's edge are the same picture as two but for edges, without steps

@@ -107,6 +107,9 @@ static status create_scenes(film_painter *p, fault *f)
         view.height = p->views[i].height;
         view.keyless = true;
         view.transparent = false;
+        if (p->run_count > 1) {
+            view.rank = i + 1;
+        }
 
         // what moves needs fewer samples than what stands still
         if (!(view.samples > 0)) {
@@ -146,11 +149,16 @@ status film_painter_create(film_painter **out, const film_run *runs, int run_cou
     p->options = *options;
     p->context = text_context_create();
 
-    // all arms share the clock and the scale of forces
+    // all arms share the clock, the scale of forces, and how much bending is enlarged
     const run_result *results[FILM_RUNS];
+    double bending = HUGE_VAL;
     for (int i = 0; i < run_count; i++) {
         results[i] = runs[i].result;
         scene_options_scale(&p->options.view, &results[i]->trace);
+        bending = fmin(bending, scene_bending_auto(runs[i].scenario, results[i]));
+    }
+    if (!(p->options.view.exaggerate > 0)) {
+        p->options.view.exaggerate = bending;
     }
     p->clock = film_clock_of(results, run_count, options->seconds, options->slow);
 
@@ -233,7 +241,7 @@ static void draw_traces(const film_painter *p, cairo_t *cr, double time)
         cairo_move_to(cr, x, panel.y);
         cairo_line_to(cr, x, panel.y + panel.height);
         cairo_set_line_width(cr, 1.1);
-        cairo_set_source_rgb(cr, 0.835, 0.369, 0);
+        set_colour(cr, palette_of(p->options.view.theme)->text);
         cairo_stroke(cr);
     }
     cairo_restore(cr);
@@ -269,7 +277,7 @@ static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
 {
     const double scale = film_scale(p);
     g_autofree char *text = describe_speed(speed);
-    const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
+    const text_block t = {.markup = text, .size = SCENE_LETTERS * scale};
 
     // with several arms there is a free corner next to the axis of the traces
     double y = 20 * scale;

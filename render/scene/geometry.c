@@ -331,11 +331,11 @@ static const struct {
     double azimuth, elevation; // [degrees]
     double half_view;          // half of the narrower angle of view [rad]
 } kinds[] = {
-    [CAMERA_THREE_QUARTER] = {"three-quarter", -60, 40, 0.15},
+    [CAMERA_THREE_QUARTER] = {"three-quarter", -44, 40, 0.15},
     [CAMERA_TOP] = {"top", -90, 90, 0.02},
     // not straight along the force's arrow, which would be a point
     [CAMERA_SIDE] = {"side", -52, 13, 0.10},
-    [CAMERA_TIP] = {"tip", -70, 46, 0.15},
+    [CAMERA_TIP] = {"tip", -32, 46, 0.15},
     [CAMERA_FREE] = {NULL, 0, 0, 0.12},
 };
 

@@ -8,7 +8,7 @@
 #include "render/page/text.h"
 
 #define TITLE_LETTERS 18.0 // [pixels of a picture 720 high]
-#define FACT_LETTERS  LABELS_LEAST
+#define FACT_LETTERS  SCENE_LETTERS
 #define MARGIN        22.0
 
 double labels_scale(const scene *sc)
@@ -17,7 +17,12 @@ double labels_scale(const scene *sc)
     if (own > 0) {
         return own;
     }
-    return fmin(sc->camera.height / 720, sc->camera.width / 800);
+    return fmin(sc->options.height / 720.0, sc->options.width / 800.0);
+}
+
+bool labels_are_large(const scene *sc)
+{
+    return labels_scale(sc) * 800 > 1.3 * sc->options.width;
 }
 
 // A line of facts.
@@ -26,10 +31,11 @@ static text_block fact(const scene *sc, const char *markup)
     return (text_block){.markup = markup, .size = FACT_LETTERS * labels_scale(sc)};
 }
 
-static void put_text_line(const scene *sc, cairo_t *cr, text_block t, double x, double y,
+// Writes a text with its upper left corner at (x, y), and takes its place.
+static void put_text_line(scene *sc, cairo_t *cr, text_block t, double x, double y,
                           colour ink)
 {
-    text_put(cr, sc->context, &t, x, y, (anchor){0, 0}, ink);
+    taken_add_box(&sc->taken, text_put(cr, sc->context, &t, x, y, (anchor){0, 0}, ink));
 }
 
 double labels_pixels(const camera *c, vector place, double length)
@@ -80,7 +86,7 @@ static int force_decimals(double force)
     return 0;
 }
 
-void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double force)
+void labels_force(scene *sc, cairo_t *cr, vector from, vector end, double force)
 {
     // text and its size
     g_autofree char *text = text_printf("%.*f\u2009N", force_decimals(force), force);
@@ -89,51 +95,59 @@ void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double 
     const text_size size = text_measure(sc->context, &t);
     vector start = camera_project(&sc->camera, from),
            tip = camera_project(&sc->camera, end);
-    double dx = tip.x - start.x, dy = tip.y - start.y, length = fmax(1e-9, hypot(dx, dy));
+    vector along = vector_unit((vector){tip.x - start.x, tip.y - start.y, 0});
 
-    // beyond the arrow's point, the box touching a circle round it
-    double x = tip.x + dx / length * (size.width / 2 + 8 * scale) - size.width / 2;
-    double y = tip.y + dy / length * (size.height / 2 + 6 * scale) - size.height / 2;
-
-    // inside the picture
-    x = fmin(fmax(x, 4), sc->camera.width - size.width - 4);
-    y = fmin(fmax(y, 4), sc->camera.height - size.height - 4);
+    // beyond the arrow's point, or where it is clear
+    const figure_rect clear = taken_clear_box(&sc->taken, tip, along, size, &sc->camera);
     colour ink = {0.70, 0.28, 0};
-    if (sc->options.theme == THEME_DARK) {
+    if (sc->options.rank > 0) {
+        ink = sc->around->strong;
+    } else if (sc->options.theme == THEME_DARK) {
         ink = (colour){1, 0.62, 0.30};
     }
-    put_text_line(sc, cr, t, x, y, ink);
+    put_text_line(sc, cr, t, clear.x, clear.y, ink);
 }
 
-void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char *facts,
+void labels_caption(scene *sc, cairo_t *cr, const char *title, const char *facts,
                     double width)
 {
     assert(width > 0);
     const double scale = labels_scale(sc), left = MARGIN * scale;
-    double bottom = sc->camera.height - MARGIN * scale;
-    double top = bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * scale;
+    const double bottom = sc->camera.height - MARGIN * scale;
     g_autofree char *escaped = text_escape(title);
 
-    // a title of several lines grows upwards
-    text_block t = {.markup = escaped, .size = TITLE_LETTERS * scale, .bold = true};
-    const double line = text_measure(sc->context, &t).height;
-    t.width = width;
-    put_text_line(sc, cr, t, left, top - (text_measure(sc->context, &t).height - line),
-                  sc->around->strong);
-    put_text_line(sc, cr, fact(sc, facts), left, bottom - FACT_LETTERS * 1.25 * scale,
-                  sc->around->faint);
+    // lines grow upwards, the facts' first
+    text_block below = fact(sc, facts);
+    below.width = width;
+    double top = bottom - text_measure(sc->context, &below).height;
+    put_text_line(sc, cr, below, left, top, sc->around->faint);
+
+    const text_block above = {.markup = escaped,
+                              .size = TITLE_LETTERS * scale,
+                              .bold = true,
+                              .width = width};
+    top -= 0.3 * FACT_LETTERS * scale + text_measure(sc->context, &above).height;
+    put_text_line(sc, cr, above, left, top, sc->around->strong);
 }
 
-void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom, double larger)
+void labels_inset(scene *sc, cairo_t *cr, double left, double bottom, double larger)
 {
     assert(larger > 0);
     g_autofree char *text = text_printf("contact, %.1f times", larger);
-    put_text_line(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc),
-                  sc->around->faint);
+    const text_block t = fact(sc, text);
+    const text_size size = text_measure(sc->context, &t);
+    const double room = 5 * labels_scale(sc);
+
+    // on a ground of its own
+    set_colour(cr, sc->around->page);
+    cairo_rectangle(cr, left, bottom - size.height - 2 * room, size.width + 2 * room,
+                    size.height + 2 * room);
+    cairo_fill(cr);
+    put_text_line(sc, cr, t, left + room, bottom - size.height - room, sc->around->faint);
 }
 
-void labels_instants(const scene *sc, cairo_t *cr, const double *times,
-                     const colour *inks, int count)
+void labels_instants(scene *sc, cairo_t *cr, const double *times, const colour *inks,
+                     int count)
 {
     assert(count > 0);
     const double scale = labels_scale(sc), swatch = 26 * scale,
@@ -155,8 +169,10 @@ void labels_instants(const scene *sc, cairo_t *cr, const double *times,
         const text_size own = text_measure(sc->context, &t);
         put_text_line(sc, cr, t, right - own.width, y, sc->around->faint);
         set_colour(cr, inks[i]);
-        cairo_rectangle(cr, right - width - 10 * scale - swatch,
-                        y + own.height / 2 - 2.5 * scale, swatch, 5 * scale);
+        const figure_rect bar = {right - width - 10 * scale - swatch,
+                                 y + own.height / 2 - 2.5 * scale, swatch, 5 * scale};
+        cairo_rectangle(cr, bar.x, bar.y, bar.width, bar.height);
         cairo_fill(cr);
+        taken_add_box(&sc->taken, bar);
     }
 }

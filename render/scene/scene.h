@@ -32,6 +32,8 @@ enum { SAMPLES_QUICK = 2, SAMPLES_FINE = 4 };
 
 enum { SCENE_INSTANTS = 32 }; // most instants in one picture
 
+#define SCENE_LETTERS 16.0 // letters at a scale of 1 [pixels]
+
 typedef struct scene_options {
     camera_view camera;
     scene_renderer renderer;
@@ -40,11 +42,16 @@ typedef struct scene_options {
     bool plain;        // no text
     bool keyless;      // no legend of the instants
     double letters; // scale of letters, 1 for a picture 720 pixels high; 0: by its size
-    double exaggerate; // factor by which bending is enlarged, also shown as text; 0: none
-    double force;      // of the longest arrow [N], at least the run's own largest
-    double impulse;    // of the largest flash [N s], likewise
-    bool inset;        // close-up of the contact in a corner
-    figure_theme theme; // THEME_DARK, else light
+    // factor by which bending is enlarged, said in the caption unless it is 1; 0: that of
+    // scene_bending_auto
+    double exaggerate;
+    int rank;           // of a run among others, whose colour its arm has; 0: alone
+    double force;       // of the longest arrow [N], at least the run's own largest
+    double impulse;     // of the largest flash [N s], likewise
+    bool inset;         // close-up of the contact in a corner, at least twice as large
+    double least_scale; // of CAMERA_TIP at the contact [pixels/m]; 0: none
+    double dpi;         // of a file; 0: 144
+    figure_theme theme; // in THEME_MONO all is grey
     bool transparent;   // without floor and background, for a surface ARGB32
 } scene_options;
 
@@ -83,6 +90,10 @@ sample scene_joints(const trace *t, const parameters *p, double time, vector *jo
 // How far a wall that moves is from its place at rest in a row, along its normal [m];
 // else 0.
 vector scene_wall_shift(const parameters *p, const sample *row);
+
+// The factor 1, 2, 5, 10, 20, 50 or 100 by which a run's largest bending shows best: the
+// beam's curve is then at most a twelfth of its length off the line from hub to tip.
+double scene_bending_auto(const scenario *s, const run_result *result);
 
 // Enlarges the bending: the distances of the joints from the line from hub to tip are
 // multiplied by the factor (0 or 1: unchanged), so that hub and tip do not move.

@@ -21,7 +21,9 @@ enum {
 #define PALEST       0.80  // share of the ground in the palest of several arms
 #define TITLE_SHARE  0.72  // of the picture's width, beside the key of instants
 #define INSET_SHARE  0.30  // of the picture's width, for the inset
+#define INSET_LARGE  0.38  // of it, where letters are large
 #define INSET_MARGIN 0.02  // of the picture's width
+#define INSET_LARGER 2.5   // times as large as the picture, at least
 
 // Page, ground, lines, the distant past; strong and faint letters.
 static const surroundings light_surroundings = {
@@ -62,10 +64,19 @@ static status create_inset(scene *sc, fault *f)
 {
     scene_options o = sc->options;
     o.camera = (camera_view){.kind = CAMERA_TIP};
-    o.width = (int)(INSET_SHARE * o.width) / 2 * 2;
+    double share = INSET_SHARE;
+    if (labels_are_large(sc)) {
+        share = INSET_LARGE;
+    }
+    o.width = (int)(share * o.width) / 2 * 2;
     o.height = (int)(0.72 * o.width) / 2 * 2;
     o.plain = true;
     o.inset = o.transparent = false;
+
+    // larger than the picture where the contact is
+    const sample first = scene_shape(sc, sc->result->trace.rows[0].time);
+    o.least_scale =
+        INSET_LARGER * labels_pixels(&sc->camera, scene_contact(sc, &first), 1);
     return scene_create(&sc->tip, sc->scenario, sc->result, &o, f);
 }
 
@@ -78,6 +89,9 @@ static status prepare_scene(scene *sc, fault *f)
     sc->joints = g_new(vector, sc->links + 1);
     sc->curve = g_new(vector, scene_curve_length(sc->links));
     scene_options_scale(&sc->options, &sc->result->trace);
+    if (!(sc->options.exaggerate > 0)) {
+        sc->options.exaggerate = scene_bending_auto(sc->scenario, sc->result);
+    }
     sc->context = text_context_create();
 
     // the viewpoint, and what paints from there
@@ -146,6 +160,7 @@ void scene_destroy(scene *sc)
     scene_floor_finish(&sc->floor);
     mesh_finish(&sc->mesh);
     mesh_finish(&sc->ghost);
+    taken_finish(&sc->taken);
     g_clear_object(&sc->context);
     g_free(sc->joints);
     g_free(sc->curve);
@@ -184,31 +199,32 @@ static char *line_of_facts(const scene *sc, double time)
     const double larger = sc->options.exaggerate;
     char *facts = text_printf("<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m", 1e3 * time,
                               sc->grid);
-    if (!(larger > 0) || larger == 1) {
+    if (larger == 1) {
         return facts;
     }
 
     // what is not as it is has to be said
     g_autofree char *plain = facts;
-    return text_printf("%s \u00b7 bending drawn %g times as large", plain, larger);
+    return text_printf("%s \u00b7 bending %g times as large", plain, larger);
 }
 
-// The texts: the force at its arrow, title and facts, and the key of the instants.
+// The texts: title and facts, the key of the instants, and the force at its arrow.
 static void draw_texts(scene *sc, cairo_t *cr, const double *times, const colour *inks,
                        int count)
 {
     const double time = times[count - 1];
-    vector start, end;
-    const sample row = scene_shape(sc, time);
-    if (scene_force_arrow(sc, &row, &start, &end)) {
-        labels_force(sc, cr, start, end, row.force);
-    }
-
     g_autofree char *facts = line_of_facts(sc, time);
     g_autofree char *title = scenario_title(sc->scenario);
     labels_caption(sc, cr, title, facts, TITLE_SHARE * sc->camera.width);
     if (count > 1 && !sc->options.keyless) {
         labels_instants(sc, cr, times, inks, count);
+    }
+
+    // the force, clear of all of them
+    vector start, end;
+    const sample row = scene_shape(sc, time);
+    if (scene_force_arrow(sc, &row, &start, &end)) {
+        labels_force(sc, cr, start, end, row.force);
     }
 }
 
@@ -246,16 +262,13 @@ static status paint_inset(scene *sc, const double *times, int count,
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
     TRY(scene_paint(tip, times, count, view, f));
 
-    // the view in its frame
+    // the view
     double margin = INSET_MARGIN * sc->options.width,
            left = sc->options.width - width - margin;
     cairo_t *cr = cairo_create(onto);
     cairo_set_source_surface(cr, view, left, margin);
     cairo_paint(cr);
-    set_colour(cr, sc->around->faint);
-    cairo_set_line_width(cr, fmax(1, labels_scale(sc)));
-    cairo_rectangle(cr, left, margin, width, height);
-    cairo_stroke(cr);
+    taken_add_box(&sc->taken, (figure_rect){left, margin, width, height});
 
     // how much larger it is than the picture, at the contact
     const sample row = scene_shape(sc, times[count - 1]);
@@ -265,6 +278,10 @@ static status paint_inset(scene *sc, const double *times, int count,
     if (!sc->options.plain) {
         labels_inset(sc, cr, left, margin + height, larger);
     }
+    set_colour(cr, sc->around->faint);
+    cairo_set_line_width(cr, fmax(1, labels_scale(sc)));
+    cairo_rectangle(cr, left, margin, width, height);
+    cairo_stroke(cr);
     return picture_end_drawing(cr, STATUS_OK, f);
 }
 
@@ -278,7 +295,26 @@ static status paint_ghost(scene *sc, double time, double opacity, cairo_surface_
                             .opacity = opacity};
     sc->ghost.vertex_count = sc->ghost.corner_count = 0;
     scene_build_arm(sc, &sc->ghost, time);
+    taken_add_mesh(&sc->taken, &sc->ghost, &sc->camera);
     return scene_painter_paint(sc->painter, &ghost, onto, f);
+}
+
+// Makes every pixel as grey as it is bright, as a print in black does.
+static void take_colours_out(cairo_surface_t *onto)
+{
+    cairo_surface_flush(onto);
+    unsigned char *data = cairo_image_surface_get_data(onto);
+    const ptrdiff_t stride = cairo_image_surface_get_stride(onto);
+    for (int y = 0; y < cairo_image_surface_get_height(onto); y++) {
+        uint32_t *row = (uint32_t *)(void *)(data + y * stride);
+        for (int x = 0; x < cairo_image_surface_get_width(onto); x++) {
+            const uint32_t red = row[x] >> 16 & 255, green = row[x] >> 8 & 255;
+            const uint32_t grey =
+                (2126 * red + 7152 * green + 722 * (row[x] & 255)) / 10000;
+            row[x] = (row[x] & 0xFF000000) | grey << 16 | grey << 8 | grey;
+        }
+    }
+    cairo_surface_mark_dirty(onto);
 }
 
 // The arm at the last instant in full colour, at earlier ones as ghosts behind it.
@@ -289,22 +325,24 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
     colour inks[SCENE_INSTANTS];
     const double now = times[count - 1];
 
-    // what is there now, and its shadow
+    // what is there now, and its shadow; a bend that is enlarged turns the hub with it
+    taken_begin(&sc->taken, &sc->camera);
     sc->mesh.vertex_count = sc->mesh.corner_count = 0;
     scene_build_arm(sc, &sc->mesh, now);
-    const sample last =
-        scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
-    scene_build_hub(sc, last.hub_angle);
+    const sample last = scene_shape(sc, now);
+    const vector first_link = sc->joints[1];
+    scene_build_hub(sc, last.hub_angle + atan2(first_link.y, first_link.x) -
+                            last.first_angle);
     scene_build_wall(sc, &last);
     TRY(paint_background(sc, onto, f));
 
     // ghosts of earlier instants behind it
     for (int i = 0; i < count - 1; i++) {
         const double pale = PALEST * (count - 1 - i) / (count - 1);
-        inks[i] = scene_paler(sc, beam_steel, pale).colour;
+        inks[i] = scene_paler(sc, scene_steel(sc), pale).colour;
         TRY(paint_ghost(sc, times[i], 1 - pale, onto, f));
     }
-    inks[count - 1] = scene_paler(sc, beam_steel, 0).colour;
+    inks[count - 1] = scene_steel(sc).colour;
 
     // the trail hovers and throws no shadow
     const painting full = {.mesh = &sc->mesh,
@@ -313,9 +351,13 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
                            .opacity = 1};
     scene_build_trail(sc, sc->result->trace.rows[0].time, now);
     TRY(scene_painter_paint(sc->painter, &full, onto, f));
-    TRY(draw_labels(sc, times, inks, count, onto, f));
+    taken_add_mesh(&sc->taken, &sc->mesh, &sc->camera);
     if (sc->tip != NULL) {
-        return paint_inset(sc, times, count, onto, f);
+        TRY(paint_inset(sc, times, count, onto, f));
+    }
+    TRY(draw_labels(sc, times, inks, count, onto, f));
+    if (sc->options.theme == THEME_MONO) {
+        take_colours_out(onto);
     }
     return STATUS_OK;
 }
@@ -378,6 +420,10 @@ status scene_write(const scene_picture *p, const char *path, fault *f)
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(sc)}};
     TRY(whole_file_open(&file, path, f));
-    const status code = png_file_write(file.stream, surface, PICTURE_DPI, notes, 4, f);
+    double dpi = PICTURE_DPI;
+    if (p->options.dpi > 0) {
+        dpi = p->options.dpi;
+    }
+    const status code = png_file_write(file.stream, surface, dpi, notes, 4, f);
     return whole_file_close(&file, code, f);
 }

@@ -5,6 +5,7 @@
 #include <pango/pangocairo.h>
 #include <stdint.h>
 
+#include "render/page/text.h"
 #include "render/scene/geometry.h"
 #include "render/scene/scene.h"
 #include "src/base/fault.h"
@@ -32,33 +33,56 @@ status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f);
 
 // --- labels, in letters of a scene: labels.c
 
-#define LABELS_LEAST 16.0 // least letters [pixels of a picture 720 high]
-
 // The scale of a scene's letters and lines: 1 for a picture 720 pixels high.
 double labels_scale(const scene *sc);
+
+// Whether letters are so large in the picture that texts and arm need places apart, as on
+// a page of one column.
+bool labels_are_large(const scene *sc);
 
 // A flash at a point, with a radius [m] and a strength of 0 to 1.
 void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius,
                   double strength);
 
-// "1.34 N" next to the head of an arrow that starts at `from`.
-void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double force);
+// "1.34 N" near the head of an arrow that starts at `from`, clear of what the picture has
+// taken.
+void labels_force(scene *sc, cairo_t *cr, vector from, vector end, double force);
 
-// Title, in lines of at most `width` [pixels], and a line of facts at the lower left
-// corner; `facts` is markup, `title` plain.
-void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char *facts,
+// Title and facts, in lines of at most `width` [pixels], at the lower left corner;
+// `facts` is markup, `title` plain.
+void labels_caption(scene *sc, cairo_t *cr, const char *title, const char *facts,
                     double width);
 
 // The length in pixels of a length [m] at a point.
 double labels_pixels(const camera *c, vector place, double length);
 
-// "contact, 1.8 times" below the left corner of an inset [pixels].
-void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom,
-                  double larger);
+// "contact, 2.5 times" in the lower left corner of an inset [pixels].
+void labels_inset(scene *sc, cairo_t *cr, double left, double bottom, double larger);
 
 // A legend of instants [s] with their colours at the lower right corner.
-void labels_instants(const scene *sc, cairo_t *cr, const double *times,
-                     const colour *inks, int count);
+void labels_instants(scene *sc, cairo_t *cr, const double *times, const colour *inks,
+                     int count);
+
+// --- what a picture has taken, as cells that no label may cover: taken.c
+
+typedef struct taken_cells {
+    int across, down;      // cells
+    unsigned char *filled; // one a cell
+} taken_cells;
+
+// None taken; before the first use of `t`, which is zero, or after any.
+void taken_begin(taken_cells *t, const camera *c);
+void taken_finish(taken_cells *t);
+
+// Takes the cells of a mesh as it is seen, and those of a box [pixels].
+void taken_add_mesh(taken_cells *t, const mesh *m, const camera *c);
+void taken_add_box(taken_cells *t, figure_rect at);
+
+// The place of a box of this size beyond the point of an arrow, or round it where cells
+// are taken there: inside the picture, with the fewest taken. `along` is the arrow's
+// direction on the picture, a unit vector.
+figure_rect taken_clear_box(const taken_cells *t, vector point, vector along,
+                            text_size size, const camera *c);
 
 // --- lit triangles, painted by OpenGL without a screen, or with a depth buffer of our
 // own
@@ -171,6 +195,7 @@ enum { TRAIL_POINTS = 240 };
 #define SLAB_TO        1.10
 #define SLAB_THICKNESS 0.030
 #define ARROW_LENGTH   0.26 // of the largest force
+#define ARROW_NEAR_BY  0.06 // of it in a view of the tip
 
 // Colours of the arm's surroundings.
 typedef struct surroundings {
@@ -191,6 +216,7 @@ struct scene {
     scene_floor floor;
     scene_painter *painter;
     PangoContext *context;
+    taken_cells taken;
     const surroundings *around;
     struct scene *tip; // the inset's own scene, or NULL
     mesh mesh, ghost;
@@ -202,8 +228,8 @@ struct scene {
 // A material blended with the colour of the distant past, by a share of 0 to 1.
 material scene_paler(const scene *sc, material m, double share);
 
-// The steel of the beam.
-extern const material beam_steel;
+// The steel of the scene's beam.
+material scene_steel(const scene *sc);
 
 // Sets sc->joints to the joints at an instant [s], with the bending as drawn. Returns the
 // row of that instant.
@@ -219,6 +245,9 @@ bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector
 
 // The point at distance x along a direction [rad] in the plane, y across it, and z above.
 vector scene_at_angle(double angle, double x, double y, double z);
+
+// The length of the largest force's arrow [m].
+double scene_longest_arrow(const scene *sc);
 
 // Adds to sc->mesh the motor with the hub at an angle [rad], the wall where a row has it,
 // and the tip's path from one instant [s] to another, paler for earlier times.

@@ -7,6 +7,8 @@
 
 enum { CURVE_PIECES = 96 }; // of a beam with few links
 
+#define LARGEST_BEND (1 / 12.0) // of a bend that is enlarged by itself [beam lengths]
+
 static double between(double a, double b, double share)
 {
     return a + share * (b - a);
@@ -75,6 +77,46 @@ void scene_exaggerate(vector *joints, int links, double factor)
         const double off = vector_dot(vector_sum(joints[i], -1, joints[0]), across);
         joints[i] = vector_sum(joints[i], (factor - 1) * off, across);
     }
+}
+
+// The largest distance of a beam's curve from the line from hub to tip [m]. A factor
+// enlarges it as it does the joints' distances.
+static double bend_of(const vector *joints, int links, vector *curve)
+{
+    const int count = scene_curve(joints, links, curve);
+    const vector along = vector_unit(joints[links]);
+    double bend = 0;
+    for (int i = 0; i < count; i++) {
+        bend = fmax(bend, fabs(along.x * curve[i].y - along.y * curve[i].x));
+    }
+    return bend;
+}
+
+double scene_bending_auto(const scenario *s, const run_result *result)
+{
+    enum { LOOKS = 500, FACTORS = 7 };
+    static const double factors[FACTORS] = {1, 2, 5, 10, 20, 50, 100};
+    const trace *t = &result->trace;
+    const int links = s->parameters.arm.links;
+    g_autofree vector *joints = g_new(vector, links + 1);
+    g_autofree vector *curve = g_new(vector, scene_curve_length(links));
+
+    // the largest bend of the run
+    double bend = 0;
+    for (int i = 0; i < LOOKS && t->row_count > 0; i++) {
+        const size_t row = (t->row_count - 1) * (size_t)i / (LOOKS - 1);
+        scene_joints(t, &s->parameters, t->rows[row].time, joints);
+        bend = fmax(bend, bend_of(joints, links, curve));
+    }
+
+    // the largest factor that leaves the arm an arm; of a rigid one rounding is no bend
+    double factor = 1;
+    for (int i = 0; i < FACTORS && bend > 1e-6 * s->parameters.arm.length; i++) {
+        if (factors[i] * bend <= LARGEST_BEND * s->parameters.arm.length) {
+            factor = factors[i];
+        }
+    }
+    return factor;
 }
 
 // The parabolas of a beam's curve: one for each joint between two links.

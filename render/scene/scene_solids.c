@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "render/plot/run_style.h"
 #include "render/scene/scene_parts.h"
 
 // Sizes in beam lengths.
@@ -11,15 +12,36 @@
 #define PIN_RADIUS   0.014
 #define SLAB_TOP     0.075
 #define TRAIL_RADIUS 0.0032
-#define ARROW_RADIUS 0.0060
+#define TRAIL_SHORT  0.016 // of the tip
+#define ARROW_RADIUS 0.023 // of the longest arrow
 
-const material beam_steel = {{0.00, 0.447, 0.698}, 0.7};
+static const material beam_steel = {{0.00, 0.447, 0.698}, 0.7};
 static const material hub_steel = {{0.31, 0.34, 0.39}, 0.8};
 static const material motor_case = {{0.66, 0.68, 0.71}, 0.4};
 static const material wall_stone = {{0.76, 0.73, 0.68}, 0.1};
 static const material pin_steel = {{0.40, 0.40, 0.42}, 0.9};
 static const material force_paint = {{0.835, 0.369, 0.0}, 0.3};
 static const material trail_paint = {{0.902, 0.624, 0.0}, 0.1};
+
+// Of a run among others in the run's colour.
+material scene_steel(const scene *sc)
+{
+    material steel = beam_steel;
+    if (sc->options.rank > 0) {
+        steel.colour = run_colour(sc->options.theme, sc->options.rank);
+    }
+    return steel;
+}
+
+// The arrow's: where arms have colours, none of them.
+static material arrow_paint(const scene *sc)
+{
+    material paint = force_paint;
+    if (sc->options.rank > 0) {
+        paint.colour = sc->around->strong;
+    }
+    return paint;
+}
 
 // A material as it looks in the past: nearer to the ground's colour, and duller.
 material scene_paler(const scene *sc, material m, double share)
@@ -115,10 +137,21 @@ vector scene_contact(const scene *sc, const sample *row)
     return sc->joints[sc->links];
 }
 
+// The longest arrow [m]: near by a short one, so that its point is in the picture.
+double scene_longest_arrow(const scene *sc)
+{
+    if (sc->options.camera.kind == CAMERA_TIP) {
+        return ARROW_NEAR_BY * sc->length;
+    }
+    return ARROW_LENGTH * sc->length;
+}
+
 // The arrow of the force that the wall exerts; false if there is none to be seen.
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end)
 {
-    double l = sc->length, length = row->force / sc->options.force * ARROW_LENGTH * l;
+    const double l = sc->length,
+                 share = sc->options.force > 0 ? row->force / sc->options.force : 0;
+    const double length = share * scene_longest_arrow(sc);
     const wall_parameters *w = &sc->scenario->parameters.wall;
 
     // across a flat wall, or across the last link at a point
@@ -129,7 +162,7 @@ bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector
     vector away = scene_at_angle(across, 0, -1, 0);
     *start = vector_sum(scene_contact(sc, row), BEAM_THICKNESS / 2 * l, away);
     *end = vector_sum(*start, length, away);
-    return row->contact > 0 && row->force > 0 && length > 0.01 * l;
+    return row->contact > 0 && row->force > 0 && share > 0.04;
 }
 
 sample scene_shape(scene *sc, double time)
@@ -147,14 +180,15 @@ void scene_build_arm(scene *sc, mesh *into, double time)
     sample row = scene_shape(sc, time);
     int count = scene_curve(sc->joints, sc->links, sc->curve);
 
-    mesh_ribbon(into, sc->curve, count, BEAM_HEIGHT * l, BEAM_THICKNESS * l, beam_steel);
+    mesh_ribbon(into, sc->curve, count, BEAM_HEIGHT * l, BEAM_THICKNESS * l,
+                scene_steel(sc));
 
     // the wall's force; the ghosts of a film go without
     bool bare = into == &sc->ghost && sc->options.keyless;
     if (!bare && scene_force_arrow(sc, &row, &start, &end)) {
         vector along = vector_sum(end, -1, start);
         mesh_arrow(into, start, vector_unit(along), sqrt(vector_dot(along, along)),
-                   ARROW_RADIUS * l, force_paint);
+                   ARROW_RADIUS * scene_longest_arrow(sc), arrow_paint(sc));
     }
 }
 
@@ -165,10 +199,18 @@ void scene_build_trail(scene *sc, double from, double time)
     const parameters *p = &sc->scenario->parameters;
     int count = 0;
 
+    // the tip's place at the end, where its path stops short and leaves the contact bare
+    scene_joints(t, p, time, sc->joints);
+    const vector now = sc->joints[sc->links];
+
     for (int i = 0; i < TRAIL_POINTS; i++) {
         double share = (double)i / (TRAIL_POINTS - 1);
         scene_joints(t, p, from + share * (time - from), sc->joints);
         vector tip = sc->joints[sc->links];
+        const vector left = vector_sum(now, -1, tip);
+        if (vector_dot(left, left) < pow(TRAIL_SHORT * sc->length, 2)) {
+            continue;
+        }
         tip.z = BEAM_HEIGHT / 2 * sc->length;
 
         // a tip at rest leaves one point, not a knot of them
@@ -185,6 +227,8 @@ void scene_build_trail(scene *sc, double from, double time)
     }
 
     if (count > 1) {
-        mesh_tube(&sc->mesh, sc->trail, sc->trail_of, count, TRAIL_RADIUS * sc->length);
+        mesh_tube(&sc->mesh, sc->trail, sc->trail_of, count,
+                  TRAIL_RADIUS *
+                      sqrt(scene_longest_arrow(sc) / ARROW_LENGTH * sc->length));
     }
 }

@@ -12,6 +12,10 @@ enum {
 // what the camera at the tip shows round the contact, in beam lengths
 #define TIP_AROUND 0.04
 
+// Height of a strip for large letters: four lines of a title and facts, or a key of five
+// instants [pixels at a scale of 1].
+#define LARGE_LETTERS_STRIP 140.0
+
 // The corners of a box, of which bit 0 of the corner's number chooses `along`, bit 1
 // `across` and bit 2 `up`; the first of each pair where the bit is set.
 typedef struct extent_box {
@@ -118,14 +122,25 @@ void scene_set_view(scene *sc)
     vector points[EXTENT_POINTS];
     int count = points_of_extent(sc, points);
 
-    // text stands below the picture
+    // text stands below the picture; letters that are large in it want a strip of their
+    // own
     camera_window window = {0.05, 0.05, 0.95, 0.88};
+    if (labels_are_large(sc)) {
+        window.bottom = 1 - LARGE_LETTERS_STRIP * labels_scale(sc) / sc->options.height;
+    }
     if (sc->options.plain) {
         window.bottom = 0.95;
     }
     sc->camera = camera_fit(sc->options.camera, arm_heading(sc), points, count,
                             sc->options.width, sc->options.height, window);
     if (sc->options.camera.kind == CAMERA_TIP) {
+        // nearer by, where that is asked for
+        const vector middle = vector_scaled(vector_add(points[0], points[7]), 0.5);
+        const double larger =
+            sc->options.least_scale / labels_pixels(&sc->camera, middle, 1);
+        sc->camera.focal_x *= fmax(1, larger);
+        sc->camera.focal_y *= fmax(1, larger);
+
         // the rest of the arm lies before and behind what is looked at
         sc->camera.nearest *= 0.2;
         sc->camera.farthest += 2.5 * sc->length;

@@ -195,22 +195,58 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs,
 
 // --- the arm in space ------------------------------------------------------------------
 
-enum { DEFAULT_INSTANTS = 5 };
+enum { DEFAULT_INSTANTS = 5, SCENE_DPI = 200 };
+
+#define SCENE_POINTS 7.0  // letters of a scene on a page [pt]
+#define SCENE_SHAPE  0.62 // its height, as a share of its width
+#define NARROW_SHAPE 0.80 // of one in a column, with its texts below
+#define NARROW       120  // widest column [mm]
+
+// Reads --exaggerate: "auto", as without it, is 0. False if it is neither that nor a
+// factor.
+static bool read_exaggeration(const char *text, double *factor)
+{
+    const char *rest;
+    *factor = 0;
+    return text == NULL || strcmp(text, "auto") == 0 ||
+           (decimal_read(text, factor, &rest) && *rest == '\0' && *factor >= 1 &&
+            *factor <= 1000);
+}
+
+// The size of a scene on a page: pixels and letters from --width, --height, --dpi and
+// --font-size.
+static void read_page_size(const arguments *a, scene_options *o)
+{
+    double points = SCENE_POINTS, height = a->height;
+    o->dpi = SCENE_DPI;
+    if (a->dpi > 0) {
+        o->dpi = a->dpi;
+    }
+    if (a->font_size > 0) {
+        points = a->font_size;
+    }
+    if (!(height > 0)) {
+        height = (a->width > NARROW ? SCENE_SHAPE : NARROW_SHAPE) * a->width;
+    }
+    o->width = (int)round(a->width / 25.4 * o->dpi);
+    o->height = (int)round(height / 25.4 * o->dpi);
+    o->letters = points / 72 * o->dpi / SCENE_LETTERS;
+}
 
 scene_options read_view(const arguments *a)
 {
     scene_options o = {.width = a->size.width,
                        .height = a->size.height,
-                       .exaggerate = a->exaggerate,
                        .inset = a->inset,
-                       .transparent = a->transparent,
-                       .theme = THEME_COLOUR};
-    if (a->theme != NULL && strcmp(a->theme, "dark") == 0) {
-        o.theme = THEME_DARK;
+                       .plain = a->bare,
+                       .transparent = a->transparent};
+    if (a->width > 0) {
+        read_page_size(a, &o);
     }
 
-    // both words were checked before
-    bool known = true;
+    // all words were checked before
+    bool known = read_theme(a, &o.theme) == EXIT_DONE &&
+                 read_exaggeration(a->exaggerate, &o.exaggerate);
     if (a->gl != NULL) {
         known = scene_renderer_find(a->gl, &o.renderer);
     }
@@ -231,6 +267,11 @@ int check_view(const arguments *a)
             "two angles such as -60,40 (elevation 1 to 90 degrees)",
             a->camera);
     }
+    double factor;
+    if (!read_exaggeration(a->exaggerate, &factor)) {
+        return complain("--exaggerate %s: expected auto or a factor, 1 to 1000",
+                        a->exaggerate);
+    }
     return EXIT_DONE;
 }
 
@@ -239,6 +280,13 @@ int check_scene(const arguments *a)
     const int ended = check_view(a);
     if (ended != EXIT_DONE) {
         return ended;
+    }
+    figure_theme theme;
+    if (a->scene != NULL && read_theme(a, &theme) != EXIT_DONE) {
+        return EXIT_BAD_ARGUMENTS;
+    }
+    if (a->scene != NULL && a->width > 0 && a->size.width > 0) {
+        return complain("--width and --size cannot go together: both are the scene's");
     }
     if (a->instants.count > SCENE_INSTANTS) {
         return complain("--at was given %d times, expected at most %d", a->instants.count,

@@ -39,12 +39,14 @@ static const option_row view_rows[] = {
            "where it is seen from (three-quarter); or two angles as -60,40: "
            "degrees from the arm's heading and above the floor",
            PLACE(camera)),
-    OPTION(NUMBER, "exaggerate", "X",
-           "draw the arm's bending X times as large, and say so", PLACE(exaggerate),
-           .low = 1, .high = 1000),
+    OPTION(
+        WORD, "exaggerate", "X|auto",
+        "draw the arm's bending X times as large, 1 to 1000, and say so (auto: so that "
+        "it shows)",
+        PLACE(exaggerate)),
     OPTION(FLAG, "inset", NULL, "show the contact from near by in a corner, too",
            PLACE(inset)),
-    OPTION(SIZE, "size", "WIDTHxHEIGHT", "of the picture in pixels (1280x720)",
+    OPTION(SIZE, "size", "WIDTHxHEIGHT", "of the arm's picture in pixels (1280x720)",
            PLACE(size), .high = 100000, .unit = "pixels"),
 };
 const option_table view_options = OPTION_TABLE("The arm in space", view_rows);

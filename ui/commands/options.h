@@ -164,8 +164,7 @@ typedef struct arguments {
     const char *overlay;  // CSV
     option_list instants; // --at [s]
     double every;         // of tables [s]; 0 if not given
-    const char *gl, *camera;
-    double exaggerate;
+    const char *gl, *camera, *exaggerate;
     uint64_t ghosts;
     bool inset;
     grid_size size;            // [pixels], of the lab [characters]
