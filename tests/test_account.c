@@ -45,6 +45,17 @@ TEST(test_a_first_impact_is_told_in_five_sentences)
     check_says(formatted("motor %.3g J", high->motor_work - free->motor_work));
 }
 
+// The printed arm has no row of the state just before its touch, and no energies.
+TEST(test_the_printed_arm_touches_and_does_not_start_on_the_wall)
+{
+    OPEN_SESSION(s, "thesis/fig-3-1");
+    run_account(&s.effective, &s.run, sentences);
+    check_says(formatted("touches the wall at %.4g s", s.run.summary.first_contact_s));
+    char line[ACCOUNT_SENTENCE];
+    run_account_line(&s.run, line);
+    assert_non_null(strstr(line, "touches the wall at 0.314 s"));
+}
+
 // The number that stands before the first place of a word in a text; NaN if the text does
 // not have the word.
 static double number_before(const char *text, const char *word)

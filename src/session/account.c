@@ -34,6 +34,17 @@ static const sample *row_entering(const trace *t, double time)
     return &t->rows[r];
 }
 
+// The row before the first touch: where no row holds the state just before it, as of the
+// printed arm, the one of the step before.
+static const sample *row_before_touch(const trace *t, double touch)
+{
+    const sample *row = row_entering(t, touch);
+    if (row->contact != 0 && row > t->rows) {
+        row--;
+    }
+    return row;
+}
+
 // --- the sentences ---------------------------------------------------------------------
 
 // Writes what drives the arm: a voltage, or a control law by its name.
@@ -91,7 +102,7 @@ static bool say_approach(account *a)
     }
 
     // with its speed and energy, as far as the model tells them
-    const sample *before = row_entering(t, touch);
+    const sample *before = row_before_touch(t, touch);
     if (before->contact != 0) {
         add_sentence(a, "Driven by %s the arm starts on the wall.", drive);
         return true;
@@ -336,7 +347,7 @@ int run_account(const scenario *s, const run_result *run,
 // Writes how fast the arm comes to the wall, as far as the model tells it.
 static void write_hit(const trace *t, double touch, char *line)
 {
-    const sample *before = row_entering(t, touch);
+    const sample *before = row_before_touch(t, touch);
     if (before->contact != 0) {
         snprintf(line, ACCOUNT_SENTENCE, "starts on the wall");
     } else if (isnan(before->gap_velocity)) {
