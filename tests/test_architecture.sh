@@ -11,7 +11,7 @@ cd "$1"
 
 rooms="src/base src/tables src/arm src/thesis src/contact src/engines src/engines/pair src/engines/newmark
     src/engines/stiff src/predict src/rig/controller src/rig/external
-    src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/study/linear src/study/robust
+    src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/study/identify src/study/linear src/study/robust
     src/study/store src/exchange/fmu/fmi2 src/exchange/fmu src/exchange src/api/impactlab src/api
     render/page render/plot render/scene render/figures
     ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands

@@ -4,7 +4,7 @@
 // play.
 //
 //     test_fit_coverage RECORDINGS [SETUP]
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 #include "tests/bench_arm.h"
 #include "tests/rig_fixture.h"

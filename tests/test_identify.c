@@ -3,7 +3,7 @@
 // stepped; what it refuses, what it finds undetermined or unexplained.
 //
 //   test_identify SEEDS
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 #include "src/base/dense.h"
 #include "src/rig/sensors.h"

@@ -5,7 +5,7 @@
 //
 //   test_recordings COUNT
 #include "src/base/csv_table.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 #include "tests/rig_fixture.h"
 
 enum { BASES = 3, MOST_SAMPLES = 800, COLUMNS = 5, FITTED = 2 };

@@ -5,7 +5,7 @@
 #include "src/base/csv_table.h"
 #include "src/session/session.h"
 #include "src/session/session_file.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 #include "src/study/linear/linear.h"
 #include "src/study/robust/robust.h"
 #include "src/study/sweep_definition.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/plot/figure_description.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 #include "src/study/linear/linear.h"
 #include "src/study/robust/robust.h"
 #include "src/study/sweep.h"

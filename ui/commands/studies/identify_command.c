@@ -7,7 +7,7 @@
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"
 #include "src/base/numbers.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 #include "ui/commands/results.h"

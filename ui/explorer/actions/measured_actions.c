@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "src/run/trace.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 // --- under the run ---------------------------------------------------------------------
 

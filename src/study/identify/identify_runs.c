@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 #include "src/study/pool.h"
 
 #define DIFFERENCE 1e-4 // step of the Jacobian's differences, over an unknown's scale

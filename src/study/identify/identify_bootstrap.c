@@ -18,7 +18,7 @@
 
 #include "src/base/numbers.h"
 #include "src/base/random.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 #define TAIL 0.025 // share of the draws below a 95 % interval
 

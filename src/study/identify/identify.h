@@ -19,6 +19,7 @@
 #include "src/study/sweep_axis.h"
 
 #define IDENTIFY_GUARD 0.01 // [s]
+#define IDENTIFY_NEAR  5.0  // standard deviations from zero or an end of a range
 // standard normal deviate that white residuals exceed once in 4000
 #define IDENTIFY_WHITE 3.5
 #define IDENTIFY_BLOCK 0.05 // time over which residuals of noise may be correlated [s]
@@ -230,6 +231,23 @@ json_t *identify_traces_json(const identification *id);
 void identify_write_set(FILE *stream, const identification *id);
 
 // --- for the parts of identify
+
+// The sensor that says when the arm touches: the FSR, else the piezoelectric one.
+int identify_force_channel(const recorded_trace *t);
+// The quantity whose differences are residuals: the FSR's volts, in which its noise does
+// not depend on the force, else the reading itself.
+double identify_compared_value(const sensor_parameters *s, int channel, double reading);
+// The standard deviation of a reading by noise and by the converter's steps,
+//
+//     sqrt(noise^2 + step^2/12),
+//
+// in the unit of identify_compared_value. *range receives the largest magnitude that can
+// be read, in that unit, and *dithered whether the noise covers the steps.
+double identify_deviation(const sensor_parameters *s, int channel, double *range,
+                          bool *dithered);
+// Finds the touches in the recorded force and weighs the readings of all channels: sets
+// the trace's contacts, deviations, uses and number of residuals. STATUS_NO_MEMORY.
+status identify_weigh(recorded_trace *t, const parameters *p, fault *f);
 
 // The value of the range to search that is nearest to another.
 double identify_within_range(const fitted_parameter *fit, double value);

@@ -17,7 +17,7 @@
 
 #include "src/base/build_config.h"
 #include "src/base/random.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 #ifdef IMPACTLAB_MINPACK
 #include <cminpack.h>

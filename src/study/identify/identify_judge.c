@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/base/dense.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 // Quantiles of the normal distribution: 95 % within, and below.
 #define QUANTILE       1.959963984540054

@@ -1,4 +1,4 @@
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 #include <assert.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 double identify_within_range(const fitted_parameter *fit, double value)
 {

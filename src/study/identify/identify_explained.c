@@ -5,7 +5,7 @@
 
 #include "src/base/plain_math.h"
 #include "src/rig/sensors.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 #define NOISE_KNOWN 2.0 // factor within which a bench knows its noise
 // standard deviations that chi square is not above its mean by chance

@@ -6,7 +6,7 @@
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/base/random.h"
-#include "src/study/identify.h"
+#include "src/study/identify/identify.h"
 
 const char *identify_words(const identification *id, int k, char *text, size_t size)
 {
