@@ -1,15 +1,12 @@
 // The report: as a PDF with outline, links and page numbers, and as a web page that needs
 // no other file and no network.
-#include "render/figures/figures.h"
+#include "render/figures/report_data.h"
 
 #include <assert.h>
 #include <cairo-pdf.h>
 #include <math.h>
 #include <stdlib.h>
 
-#include "render/plot/axis.h"
-#include "render/plot/run_style.h"
-#include "src/base/json.h"
 #include "src/base/shipped.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
@@ -245,6 +242,7 @@ static void add_head(const report_content *r, GString *html)
         r->heading, uPlot_LICENSE);
     g_string_append(html, uPlot_min_css);
     g_string_append(html, report_css);
+    report_add_dark_colours(html);
     text_append(
         html,
         "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the "
@@ -256,8 +254,8 @@ static void add_head(const report_content *r, GString *html)
         r->heading, r->preface);
 }
 
-// A picture with many cells, which would be many thousand paths: as a PNG in the page.
-static status add_png(GString *html, const picture *p, const char *alternative, fault *f)
+// Appends the picture as a PNG in base64, as an address that holds it.
+static status add_png(GString *html, const picture *p, fault *f)
 {
     text_stream stream;
     size_t length = 0;
@@ -272,148 +270,36 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
 
     if (code == STATUS_OK) {
         g_autofree char *text = g_base64_encode((const guchar *)bytes, length);
-        text_append(html, "<img alt=\"%s\" src=\"data:image/png;base64,%s\">\n",
-                    alternative, text);
+        text_append(html, "\"data:image/png;base64,%s\"", text);
     }
     free(bytes);
     return code;
 }
 
-// A member of plain text.
-static json_t *plain_json(const char *markup)
+// A drawing with many cells, which would be many thousand paths: as pixels, for a light
+// and for a dark screen.
+static status add_map(GString *html, const artwork *drawn, const char *alternative,
+                      fault *f)
 {
-    g_autofree char *plain = text_plain(text_or(markup, ""));
-    return json_text(plain);
-}
-
-// Values as base64 of little-endian numbers of 32 bits; what an axis cannot show is NaN.
-static json_t *packed_json(const figure_series *s,
-                           double (*value)(const figure_series *, size_t))
-{
-    g_autofree float *values = g_new(float, s->count + 1);
-    for (size_t i = 0; i < s->count; i++) {
-        values[i] = (float)value(s, i);
-    }
-    g_autofree char *text =
-        g_base64_encode((const guchar *)values, s->count * sizeof values[0]);
-    return json_text(text);
-}
-
-// A colour as three bytes.
-static json_t *ink_json(const figure_series *s, figure_theme theme, int place)
-{
-    colour c = palette_series(theme, s->colour, place);
-    if (s->run == RUN_BEHIND) {
-        c = palette_of(theme)->mark;
-    } else if (s->run > 0) {
-        c = run_colour(theme, s->run);
-    }
-    const double bytes[] = {round(255 * c.red), round(255 * c.green),
-                            round(255 * c.blue)};
-    return json_numbers(bytes, 3);
-}
-
-// The line style of a series as the figure has it.
-static line_style style_of_series(const figure_panel *panel, int index)
-{
-    const int run = panel->series[index].run;
-    if (run == RUN_BEHIND) {
-        return LINE_SOLID;
-    }
-    if (run > 0) {
-        return run_style_of(run).dash;
-    }
-    return untaken_style(panel->series, index);
-}
-
-// True if both have the same numbers on the horizontal axis.
-static bool same_times(const figure_series *a, const figure_series *b)
-{
-    bool same = a->count == b->count;
-    for (size_t i = 0; same && i < a->count; i++) {
-        same = series_x(a, i) == series_x(b, i);
-    }
-    return same;
-}
-
-// Name, look and values of the series of a panel. Without `x` a series has that of the
-// one before it.
-static json_t *series_json(const figure_panel *panel)
-{
-    json_t *all = json_array();
-    for (int i = 0; i < panel->series_count; i++) {
-        const figure_series *s = &panel->series[i];
-        json_t *one =
-            json_of("label:o light:o dark:o style:i line:b points:b y:o",
-                    plain_json(text_or(s->label, s->name)), ink_json(s, THEME_COLOUR, i),
-                    ink_json(s, THEME_DARK, i), (int)style_of_series(panel, i),
-                    !s->no_line, s->marker != MARKER_NONE, packed_json(s, series_y));
-        if (i == 0 || !same_times(s, s - 1)) {
-            json_members(one, "x:o", packed_json(s, series_x));
-        }
-        json_add(all, one);
-    }
-    return all;
-}
-
-// Names, ranges and series of a panel.
-static json_t *panel_json(const figure *fig, const figure_panel *panel,
-                          const figure_range *range)
-{
-    const double x[] = {range->x_low, range->x_high};
-    const double y[] = {range->y_low, range->y_high};
-    return json_of("x:o y:o xlog:b ylog:b xname:o xunit:o name:o unit:o series:o",
-                   json_numbers(x, 2), json_numbers(y, 2), range->x_logarithmic,
-                   range->y_logarithmic, plain_json(text_or(fig->x.label, fig->x.name)),
-                   plain_json(fig->x.unit),
-                   plain_json(text_or(panel->y.label, panel->y.name)),
-                   plain_json(panel->y.unit), series_json(panel));
-}
-
-// True if a series is a function of the horizontal axis, in ascending order.
-static bool ascends(const figure_series *s)
-{
-    for (size_t i = 1; i < s->count; i++) {
-        if (!(series_x(s, i) >= series_x(s, i - 1))) {
-            return false;
+    static const figure_theme themes[] = {THEME_DARK, THEME_COLOUR};
+    g_string_append(html, "<div class=\"drawing\"><picture>");
+    for (size_t i = 0; i < G_N_ELEMENTS(themes); i++) {
+        figure themed = *drawn->plotted;
+        artwork shown = *drawn;
+        themed.theme = themes[i];
+        shown.plotted = &themed;
+        picture p = artwork_picture(&shown, &(figure_options){.look.dpi = SCREEN_DPI});
+        if (themes[i] == THEME_DARK) {
+            g_string_append(html, "<source media=\"screen and (prefers-color-scheme:dark)"
+                                  "\" srcset=");
+            TRY(add_png(html, &p, f));
+        } else {
+            text_append(html, "><img alt=\"%s\" src=", alternative);
+            TRY(add_png(html, &p, f));
         }
     }
-    return true;
-}
-
-// True if the script can draw the figure from its data: curves over one axis, no maps and
-// no curves in a plane.
-static bool is_of_curves(const figure *fig)
-{
-    bool curves = !fig->equal_axes;
-    for (int i = 0; i < fig->panel_count; i++) {
-        const figure_panel *panel = &fig->panels[i];
-        curves = curves && panel->map == NULL && panel->series_count > 0;
-        for (int k = 0; curves && k < panel->series_count; k++) {
-            curves = panel->series[k].shade == NULL && ascends(&panel->series[k]);
-        }
-    }
-    return curves;
-}
-
-// The data of all panels as JSON in an attribute, from which the script draws what is
-// zoomed.
-static void add_panels(GString *html, const figure *fig, const figure_report *seen)
-{
-    json_t *all = json_array();
-    for (int i = 0; i < seen->panel_count; i++) {
-        json_add(all, panel_json(fig, &fig->panels[i], &seen->ranges[i]));
-    }
-
-    // as one attribute
-    char *json = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(9));
-    if (json == NULL) {
-        g_error("out of memory");
-    }
-    g_autofree char *escaped = g_markup_escape_text(json, -1);
-    text_append(html, " data-panels=\"%s\"", escaped);
-    free(json);
-    json_decref(all);
+    g_string_append(html, "></picture></div>\n");
+    return STATUS_OK;
 }
 
 // The figure with what it shows in words, and for the script what its axes mean.
@@ -431,12 +317,13 @@ static status add_figure(GString *html, const report_item *item, guint index,
         untitled = *drawn.plotted;
         untitled.title = NULL;
         drawn.plotted = &untitled;
+        figure_size(&untitled, &drawn.width, &drawn.height);
     }
 
-    picture p = artwork_picture(&drawn, &options);
-    p.dpi = SCREEN_DPI; // of what has too many cells for paths
+    const picture p = artwork_picture(&drawn, &options);
     g_autofree char *alternative = text_escape(p.alternative);
-    text_append(html, "<figure role=\"img\" aria-label=\"%s\"", alternative);
+    const char *kind = drawn.paint != NULL ? " class=\"diagram\"" : "";
+    text_append(html, "<figure%s role=\"img\" aria-label=\"%s\"", kind, alternative);
     if (item->live != NULL) {
         text_append(html, " data-live=\"%s\"", item->live);
     }
@@ -444,15 +331,15 @@ static status add_figure(GString *html, const report_item *item, guint index,
     // a map as pixels, anything else as paths
     if (drawn.plotted != NULL && drawn.plotted->panels[0].map != NULL) {
         g_string_append(html, ">\n");
-        TRY(add_png(html, &p, alternative, f));
+        TRY(add_map(html, &drawn, alternative, f));
     } else {
         // where its panels are is known once it has been painted
         g_autofree char *svg = picture_svg(&p, f), *prefix = text_printf("i%u-", index);
         if (svg == NULL) {
             return f->code;
         }
-        if (drawn.plotted != NULL && is_of_curves(drawn.plotted)) {
-            add_panels(html, drawn.plotted, seen);
+        if (drawn.plotted != NULL && report_is_of_curves(drawn.plotted)) {
+            report_add_data(html, drawn.plotted, seen);
         }
         g_autofree char *small = svg_for_page(svg, prefix, letters);
         text_append(html, ">\n<div class=\"drawing\">\n%s</div>\n", small);

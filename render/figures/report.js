@@ -27,8 +27,66 @@ const button = (row, text, act) => {
   row.append(b);
   return b;
 };
+const css = name => getComputedStyle(document.body).getPropertyValue(name).trim();
+const inkOf = of => `rgb(${darkness.matches ? of.dark : of.light})`;
+const short = v => String(+v.toPrecision(3));
+// what a chart draws below its curves: stretches across all panels
+const underlay = (u, marks) => {
+  const {ctx, bbox} = u, at = v => Math.min(Math.max(u.valToPos(v, 'x', true), bbox.left), bbox.left + bbox.width);
+  ctx.fillStyle = css('--wash');
+  for (const [from, to] of marks.stretches) { ctx.fillRect(at(from), bbox.top, at(to) - at(from), bbox.height); }
+};
+// and over them: marks and levels with their words, impulses as arrows above the panel
+const overlay = (u, panel, marks, first) => {
+  const {ctx, bbox} = u, k = devicePixelRatio, {left, top} = bbox, right = left + bbox.width;
+  const line = (from, to, dash) => {
+    ctx.setLineDash(dash.map(v => v * k));
+    ctx.beginPath();
+    ctx.moveTo(...from);
+    ctx.lineTo(...to);
+    ctx.stroke();
+  };
+  const seen = v => { const x = u.valToPos(v, 'x', true); return x >= left && x <= right ? x : null; };
+  // words from left to right, in the first row where they meet no earlier ones
+  const ends = [], words = (text, x, y, step) => {
+    const wide = ctx.measureText(text).width, from = x + 4 * k + wide > right ? x - 4 * k - wide : x + 4 * k;
+    const row = ends.findIndex(end => end < from), at = row < 0 ? ends.length : row;
+    ends[at] = from + wide + 6 * k;
+    ctx.fillText(text, from, y + at * step * k);
+  };
+  ctx.save();
+  ctx.font = `${11 * k}px sans-serif`;
+  ctx.textAlign = 'left';
+  ctx.textBaseline = 'alphabetic';
+  ctx.lineWidth = k;
+  ctx.strokeStyle = ctx.fillStyle = css('--soft');
+  for (const m of [...marks.lines].sort((a, b) => a.x - b.x)) {
+    const x = seen(m.x);
+    if (x !== null) {
+      line([x, top], [x, top + bbox.height], [3, 2]);
+      if (first) { words(m.label, x, top + 12 * k, 13); }
+    }
+  }
+  for (const level of panel.levels) {
+    const y = u.valToPos(level.y, 'y', true);
+    line([left, y], [right, y], [4, 3]);
+    ctx.fillText(level.label, right - ctx.measureText(level.label).width - 4 * k, y - 4 * k);
+  }
+  ends.length = 0;
+  const largest = Math.max(...panel.impulses.map(p => Math.abs(p.size)));
+  for (const p of panel.impulses) {
+    const x = seen(p.x), high = (8 + 24 * Math.abs(p.size) / largest) * k, base = top - 4 * k;
+    if (x === null) { continue; }
+    ctx.strokeStyle = ctx.fillStyle = inkOf(p);
+    line([x, base], [x, base - high], []);
+    line([x - 3 * k, base - high + 5 * k], [x, base - high], []);
+    line([x + 3 * k, base - high + 5 * k], [x, base - high], []);
+    words(`${short(p.size)} ${panel.impulse_unit}`, x, base - 20 * k, 13);
+  }
+  ctx.restore();
+};
 // one panel as a chart; `moved` is told a new range of the common axis
-const chartOf = (panel, place, hidden, moved) => {
+const chartOf = (panel, marks, first, place, hidden, moved) => {
   let x;
   const tables = panel.series.map(s => [x = s.x ? unpack(s.x) : x, unpack(s.y)]);
   const data = uPlot.join(tables.map(([xs, ys]) => {
@@ -36,30 +94,30 @@ const chartOf = (panel, place, hidden, moved) => {
     const last = xs.map((v, i) => v !== null && v !== xs[i + 1]);
     return [xs.filter((_, i) => last[i]), ys.filter((_, i) => last[i])];
   }));
-  const css = name => getComputedStyle(document.body).getPropertyValue(name).trim();
   const named = (name, unit) => name + (unit ? ' in ' + unit : '');
   const axis = label => ({label, stroke: css('--text'), grid: {stroke: css('--line'), width: 1},
     ticks: {stroke: css('--line'), width: 1}, font: '12px sans-serif', labelFont: '12px sans-serif'});
   const digits = (u, v) => v == null ? '\u2013' : String(+v.toPrecision(5));
   return new uPlot({
-    width: place.clientWidth, height: 260, cursor: {sync: {key: place.id}, drag: {x: true, y: false}},
+    title: panel.heading || undefined, width: place.clientWidth, height: panel.impulses.length ? 300 : 260,
+    padding: [panel.impulses.length ? 44 : null, null, null, null], cursor: {sync: {key: place.id}, drag: {x: true, y: false}},
     legend: {live: true},
     scales: {x: {time: false, distr: panel.xlog ? 3 : 1, range: () => place.range},
       y: {distr: panel.ylog ? 3 : 1, range: () => panel.y}},
     axes: [axis(named(panel.xname, panel.xunit)), {...axis(named(panel.name, panel.unit)), size: 64}],
     series: [{label: panel.xname, value: digits}, ...panel.series.map(s => {
-      const ink = `rgb(${darkness.matches ? s.dark : s.light})`;
+      const ink = inkOf(s);
       return {label: s.label, stroke: ink, width: s.line ? 1.6 : 0, show: !hidden.has(s.label),
         dash: dashes[s.style].map(v => 1.6 * v), points: {show: s.points, size: 6, stroke: ink, fill: ink},
         value: digits};
     })],
-    hooks: {setSelect: [u => u.select.width > 3 && moved([u.posToVal(u.select.left, 'x'),
+    hooks: {drawClear: [u => underlay(u, marks)], draw: [u => overlay(u, panel, marks, first)], setSelect: [u => u.select.width > 3 && moved([u.posToVal(u.select.left, 'x'),
       u.posToVal(u.select.left + u.select.width, 'x')])]},
   }, data, place);
 };
 // a drawing, and below it the buttons that put charts into its place and back
 const explore = (figure, index) => {
-  const panels = JSON.parse(figure.dataset.panels), drawing = figure.querySelector('.drawing');
+  const panels = JSON.parse(figure.dataset.panels), marks = JSON.parse(figure.dataset.marks);
   const row = document.createElement('div'), place = document.createElement('div'), hidden = new Set();
   const log = panels[0].xlog, whole = panels[0].x;
   let charts = [];
@@ -75,7 +133,7 @@ const explore = (figure, index) => {
       u.setScale('x', {min: range[0], max: range[1]});
     });
   };
-  const draw = () => { close(); charts = panels.map(p => chartOf(p, place, hidden, show)); };
+  const draw = () => { close(); charts = panels.map((p, i) => chartOf(p, marks, i === 0, place, hidden, show)); };
   const open = button(row, 'Zoom and read values', b => {
     const on = figure.classList.toggle('explored');
     b.textContent = on ? 'Back to the drawing' : 'Zoom and read values';
@@ -106,7 +164,7 @@ const explore = (figure, index) => {
     });
     toggle.className = 'curve';
   }
-  addEventListener('resize', () => charts.forEach(u => u.setSize({width: place.clientWidth, height: 260})));
+  addEventListener('resize', () => charts.forEach(u => u.setSize({width: place.clientWidth, height: u.height})));
   darkness.addEventListener('change', () => charts.length && draw());
 };
 // the lab's page in the place of a drawing, where the report holds it

@@ -34,3 +34,9 @@ static inline colour run_colour(figure_theme theme, int rank)
     const run_style look = run_style_of(rank);
     return palette_series(theme, look.slot, theme == THEME_MONO ? look.grey : 0);
 }
+
+// The colour of a lone run's impulses (rank 0), or of run `rank`'s.
+static inline colour impulse_colour(figure_theme theme, int rank)
+{
+    return rank > 0 ? run_colour(theme, rank) : palette_series(theme, SLOT_PURPLE, 0);
+}

@@ -511,13 +511,11 @@ static void label_impulses(drawing *d, const panel_layout *l, double base)
 // of another run shows below it.
 static void set_impulse(const drawing *d, const figure_impulse *p)
 {
-    colour ink = palette_series(d->style.theme, SLOT_PURPLE, 0);
     line_style dash = LINE_SOLID;
     if (p->run > 0) {
-        ink = run_colour(d->style.theme, p->run);
         dash = run_style_of(p->run).dash;
     }
-    set_colour(d->cr, ink);
+    set_colour(d->cr, impulse_colour(d->style.theme, p->run));
     set_line_style(d->cr, dash, CURVE_WIDTH);
     cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_BUTT);
 }
