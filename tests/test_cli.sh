@@ -514,11 +514,20 @@ expect 0 "${examined[@]}" --before before.json
 says out "+0.0 (+0.0 to +0.0)"
 expect 2 robust compare/force-pd --draw 12 --seed 41 --force 1 --before before.json
 says err "has 12 cases from seed 40, expected 12 from 41"
+expect 0 "${examined[@]:0:2}" --draw 5 --seed 40 --force 1 --before before.json
+says out "+0.0 (+0.0 to +0.0)"
 expect 2 robust compare/force-pd --draw 12 --over two.set
 says err "--over does not go with --draw"
 expect 2 robust compare/force-pd --force 1
 expect 2 robust compare/hybrid-printed-arm --draw 12
 says err "cannot be drawn around compare/hybrid-printed-arm"
+
+# around a fit the arms are its own
+printf 'control: {law: touch, force: 1}\nfit: {arm.k2: [0.02]}\n' >fitted.yaml
+expect 0 robust fitted.yaml --draw 4 --json fitted.json --csv fitted.csv
+says out "the arm of each case is drawn from the fit to your recordings"
+grep -q '"standard_error": 0.02' fitted.json || fail "robust --draw --json does not tell of the fit"
+[ "$(grep -c 'arm.k2=.* belief.k2_factor=' fitted.csv)" = 4 ] || fail "a case has not its fitted arm"
 "$lab" robust compare/twelve-links --runs 5000 --db long.sqlite --jobs 1 2>err &
 interrupted=$!
 until [ -s long-hybrid.sqlite ]; do sleep 0.05; done

@@ -190,6 +190,11 @@ there=$(grep -o '[0-9]* of 40000' err | grep -o '^[0-9]*')
 grep -q "^hybrid,$there," robust.csv && [ -s robust.svg ] && [ -s robust.md ] ||
     fail "the runs of a law that were done are not judged"
 part robust.json
+interrupted robust compare/force-pd --draw 20000 --csv exam.csv --json exam.json
+there=$(grep -o '[0-9]* of 20000' err | grep -o '^[0-9]*')
+[ "$there" -gt 0 ] && [ "$(wc -l <exam.csv)" = $((there + 1)) ] ||
+    fail "the cases of an exam that were done are not judged"
+part exam.json
 interrupted study methods corrected/first-impact --set arm.links=3 --plot methods.svg --json methods.json
 [ -s methods.svg ] || fail "the points of a study that were done are not drawn"
 part methods.json

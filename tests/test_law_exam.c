@@ -1,7 +1,7 @@
 // The exam of control laws: cases that nobody chose, judged by bounds.
 #include "src/study/robust/law_exam.h"
 
-#include "tests/shipped_scenario.h"
+#include "tests/scenario_fixture.h"
 
 enum { SEEDS = 400 };
 
@@ -34,7 +34,7 @@ TEST(errors_of_a_case_exclude_one_another)
     KEPT_SCENARIO(s) = shipped("compare/observer");
     int threes = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
-        const drawn_case c = drawn_case_of(&s.parameters, seed);
+        const drawn_case c = drawn_case_of(&s, seed);
         assert_in_range(c.error_count, 2, 3);
         threes += c.error_count == 3;
         for (int i = 0; i < c.setting_count; i++) {
@@ -57,7 +57,7 @@ TEST(errors_are_drawn_around_the_scenario)
         shipped_with("compare/observer", "arm.length=2 wall.angle=0.3 initial.angle=0");
     bool drawn[LAW_ERRORS] = {false};
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
-        const drawn_case c = drawn_case_of(&s.parameters, seed);
+        const drawn_case c = drawn_case_of(&s, seed);
         scenario derived;
         action room;
         DONE(drawn_case_scenario(&derived, &s, &c, true, &room, &f));
@@ -81,7 +81,7 @@ TEST(a_jitter_stays_within_the_period)
     KEPT_SCENARIO(s) = shipped("compare/observer");
     int both = 0;
     for (uint64_t seed = 5000; seed < 9000; seed++) {
-        const drawn_case c = drawn_case_of(&s.parameters, seed);
+        const drawn_case c = drawn_case_of(&s, seed);
         scenario derived;
         action room;
         DONE(drawn_case_scenario(&derived, &s, &c, true, &room, &f));
@@ -236,4 +236,74 @@ TEST(what_cannot_be_drawn_is_told)
     REFUSED(STATUS_BAD_ARGUMENT, "cannot be drawn around compare/hybrid-printed-arm",
             law_exam_run(&e, &asked, &(exam_options){.jobs = 1}, &f));
     law_exam_finish(&e);
+}
+
+// The value that a case gives a parameter; the test fails without one.
+static double drawn_value(const drawn_case *c, const char *path)
+{
+    const size_t length = strlen(path);
+    for (int i = 0; i < c->setting_count; i++) {
+        const char *setting = c->settings[i];
+        if (strncmp(setting, path, length) == 0 && setting[length] == '=') {
+            return strtod(setting + length + 1, NULL);
+        }
+    }
+    fail_if(true, "no case has %s", path);
+    return (double)NAN;
+}
+
+// Around a fit the arms of the cases have its errors and correlations: of n draws the
+// mean is within five standard errors s/sqrt(n), the deviation within 5 s/sqrt(2 n), the
+// correlation r within 5 (1 - r^2)/sqrt(n). The law is told the fitted value of each. No
+// case has an error of the arm from the general list.
+TEST(arms_around_a_fit_have_its_errors_and_correlations)
+{
+    static const char text[] = "arm: {k2: 5, hub_inertia: 6e-3}\n"
+                               "control: {law: touch, force: 1}\n"
+                               "fit:\n"
+                               "  arm.k2: [0.04]\n"
+                               "  arm.hub_inertia: [3e-5, -0.8]\n";
+    KEPT_SCENARIO(s) = good(text);
+    enum { DRAWS = 4000 };
+    double sum[2] = {0}, square[2] = {0}, product = 0;
+    for (uint64_t seed = 0; seed < DRAWS; seed++) {
+        const drawn_case c = drawn_case_of(&s, seed);
+        const double k2 = drawn_value(&c, "arm.k2");
+        const double inertia = drawn_value(&c, "arm.hub_inertia");
+        const double off[2] = {(k2 - 5) / 0.04, (inertia - 6e-3) / 3e-5};
+        for (int i = 0; i < 2; i++) {
+            sum[i] += off[i];
+            square[i] += off[i] * off[i];
+        }
+        product += off[0] * off[1];
+        check_close(k2 * drawn_value(&c, "belief.k2_factor"), 5, 1e-7);
+        check_close(inertia * drawn_value(&c, "belief.inertia_factor"), 6e-3, 1e-10);
+        for (int i = 0; i < c.error_count; i++) {
+            const char *kind = law_error_name(c.errors[i]);
+            fail_if(strstr(kind, "links") != NULL || strstr(kind, "stiffness") != NULL,
+                    "'%s' is drawn around a fit", kind);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        check_close(sum[i] / DRAWS, 0, 5 / sqrt(DRAWS));
+        check_close(sqrt(square[i] / DRAWS), 1, 5 / sqrt(2.0 * DRAWS));
+    }
+    check_close(product / DRAWS, -0.8, 5 * (1 - 0.64) / sqrt(DRAWS));
+}
+
+// Rows of an exam around a fit are not compared with those of another arm.
+TEST_IN_FOLDER(exams_around_different_fits_are_not_compared)
+{
+    KEPT_SCENARIO(s) = good("control: {law: touch, force: 1}\nfit: {arm.k2: [0.04]}\n");
+    KEPT_SCENARIO(other) = good("control: {law: touch, force: 1}\n");
+    SCOPED(law_exam_finish) law_exam e = examined(&s, 2, 7);
+    SCOPED(law_exam_finish) law_exam general = examined(&other, 2, 7);
+    json_t *first = law_exam_json(&e, NULL);
+    assert_int_equal(json_dump_file(first, "before.json", 0), 0);
+    json_decref(first);
+    exam_rows rows;
+    DONE(exam_rows_read(&rows, "before.json", &e, &f));
+    exam_rows_finish(&rows);
+    REFUSED(STATUS_BAD_ARGUMENT, "around another fit",
+            exam_rows_read(&rows, "before.json", &general, &f));
 }

@@ -415,3 +415,40 @@ TEST(an_expectation_may_be_exact)
     check_fault("title: t\nexpect: {impacts: {value: 2, tolerance: -1}}\n", 2, 41,
                 "tolerance");
 }
+
+// What a fit leaves open is read, and written so that it reads back the same.
+TEST(a_fit_is_read_and_written)
+{
+    KEPT_SCENARIO(s) = good("arm: {k2: 5}\nfit:\n  arm.k2: [0.05]\n"
+                            "  arm.hub_inertia: [1e-5, 0.5]\n"
+                            "  motor.stiction: [2e-4, -0.1, 0]\n");
+    KEPT_TEXT(text) = scenario_as_text(&s);
+    KEPT_SCENARIO(again) = good(text);
+    const scenario *const both[] = {&s, &again};
+    for (int i = 0; i < 2; i++) {
+        const scenario_fit *fit = both[i]->fit;
+        assert_int_equal(fit->count, 3);
+        assert_int_equal(fit->parameters[1], parameter_find("arm.hub_inertia"));
+        check_close(fit->errors[2], 2e-4, 0);
+        check_close(fit->correlation[1], 0.5, 0);
+        check_close(fit->correlation[2 * 3 + 0], -0.1, 0);
+        check_close(fit->correlation[4], 1, 0);
+    }
+}
+
+TEST(faults_of_fits)
+{
+    check_fault("fit: 3\n", 1, 6, "fit is a single value");
+    check_fault("fit: {}\n", 1, 6, "fit is empty");
+    check_fault("fit:\n  arm.k9: [1]\n", 2, 3, "'arm.k9' is no parameter with a real");
+    check_fault("fit:\n  arm.links: [1]\n", 2, 3, "no parameter with a real value");
+    check_fault("fit:\n  arm.k2: 0.1\n", 2, 11, "its standard error and 0 correl");
+    check_fault("fit:\n  arm.k2: [0]\n", 2, 12, "a standard error above 0");
+    check_fault("fit:\n  arm.k2: [1 kg]\n", 2, 12, "expected N m/rad");
+    check_fault("fit:\n  arm.k2: [1, 0.5]\n", 2, 11, "0 correlations");
+    check_fault("fit:\n  arm.k2: [1]\n  arm.mass: [1]\n", 3, 13, "1 correlations");
+    check_fault("fit:\n  arm.k2: [1]\n  arm.mass: [1, 1.5]\n", 3, 17, "of -1 to 1");
+    check_fault("fit:\n  arm.k2: [1]\n  arm.mass: [1, 0.9]\n"
+                "  arm.hub_inertia: [1, 0.9, -0.9]\n",
+                2, 3, "no parameters have such correlations");
+}

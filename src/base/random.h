@@ -44,6 +44,16 @@ static inline double random_uniform(random_generator *g)
     return random_share(random_bits(g));
 }
 
+// A number of about the standard normal distribution: the sum of 12 even ones less 6.
+static inline double random_about_normal(random_generator *g)
+{
+    double sum = -6;
+    for (int i = 0; i < 12; i++) {
+        sum += random_uniform(g);
+    }
+    return sum;
+}
+
 // A whole number evenly distributed over 0 ... bound - 1; bound > 0.
 uint64_t random_below(random_generator *g, uint64_t bound);
 

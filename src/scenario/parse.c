@@ -58,8 +58,8 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what,
 // may have there.
 static void report_unknown_top(reader *r, const tree_node *key)
 {
-    static const char *const others[] = {"title",  "description", "panes",
-                                         "script", "expect",      "lesson"};
+    static const char *const others[] = {"title",  "description", "panes", "script",
+                                         "expect", "lesson",      "fit"};
     nearest_word near = nearest_begin(key->text);
 
     // the whole path of a parameter, which a file has as a key under its group
@@ -101,8 +101,8 @@ static void report_unknown_top(reader *r, const tree_node *key)
         return;
     }
     report_node(r, key,
-                "unknown key '%.60s', expected title, description, panes%s, script, "
-                "expect or lesson",
+                "unknown key '%.60s', expected title, description, panes%s, fit, "
+                "script, expect or lesson",
                 key->text, groups);
 }
 
@@ -153,6 +153,8 @@ static void parse_root(reader *r, const tree_node *root)
             r->s->description = parse_prose(r, child, "description", MANY_LINES);
         } else if (strcmp(key, "panes") == 0) {
             reader_panes(r, child);
+        } else if (strcmp(key, "fit") == 0) {
+            reader_fit(r, child);
         } else if (strcmp(key, "script") == 0) {
             script = child;
         } else if (strcmp(key, "expect") == 0) {

@@ -86,6 +86,9 @@ void reader_resolve(reader *r);
 // Reports, at a place, that control.lock names a mode which the law does not have.
 void reader_check_lock(reader *r, const parameters *p, place at);
 
+// Parses what a fit leaves open of the parameters.
+void reader_fit(reader *r, const tree_node *map);
+
 // Parses the script's actions; the parameters must have been resolved.
 void reader_script(reader *r, const tree_node *list);
 

@@ -28,6 +28,7 @@ void scenario_finish(scenario *s)
     free(s->actions);
     free(s->expectations);
     finish_lesson(&s->lesson);
+    free(s->fit);
     *s = (scenario){0};
 }
 
@@ -67,6 +68,7 @@ status scenario_copy(scenario *copy, const scenario *s)
     copy->file = text_of(s->file, &good);
     copy->title = text_of(s->title, &good);
     copy->description = text_of(s->description, &good);
+    copy->fit = copy_of(s->fit, sizeof *s->fit, &good);
     copy->written = copy_of(s->written, sizeof *s->written, &good);
     copy->actions =
         copy_of(s->actions, (size_t)s->action_count * sizeof *s->actions, &good);

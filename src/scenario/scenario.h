@@ -90,6 +90,17 @@ typedef struct fault_place {
     const char *path; // of the parameter, a literal; NULL if it is of none
 } fault_place;
 
+enum { SCENARIO_FIT = 12 }; // parameters of a fit, at most
+
+// How far recordings leave open which arm it is: a scenario that was fitted to them has
+// the standard errors of the fitted parameters, and their correlations.
+typedef struct scenario_fit {
+    int parameters[SCENARIO_FIT]; // indices in parameter_table
+    double errors[SCENARIO_FIT];  // above 0, each in its parameter's unit
+    double correlation[SCENARIO_FIT * SCENARIO_FIT]; // [count x count], row by row
+    int count;
+} scenario_fit;
+
 // What a scenario's file gives of its parameters.
 typedef struct written_parameters {
     parameters values;                         // resolved
@@ -112,6 +123,7 @@ typedef struct scenario {
     expectation *expectations;
     int expectation_count;
     lesson lesson;       // of no steps if it has none
+    scenario_fit *fit;   // of its parameters to recordings; NULL: they were not fitted
     fault_place refused; // of the first fault that reading or overriding it reported
 } scenario;
 

@@ -133,6 +133,25 @@ static void write_actions(FILE *stream, const scenario *s)
     }
 }
 
+// Writes a line for each fitted parameter: its standard error, then its correlations with
+// those above.
+static void write_fit(FILE *stream, const scenario_fit *fit)
+{
+    fputs("fit: # of each parameter its standard error, and correlations with those "
+          "above\n",
+          stream);
+    for (int i = 0; i < fit->count; i++) {
+        char text[NUMBER_TEXT];
+        number_format(text, fit->errors[i]);
+        fprintf(stream, "  %s: [%s", parameter_table[fit->parameters[i]].path, text);
+        for (int k = 0; k < i; k++) {
+            number_format(text, fit->correlation[i * fit->count + k]);
+            fprintf(stream, ", %s", text);
+        }
+        fputs("]\n", stream);
+    }
+}
+
 // --- lessons ---------------------------------------------------------------------------
 
 // Writes a key and a list of at least one text.
@@ -264,6 +283,9 @@ void scenario_write(FILE *stream, const scenario *s)
     // parameters, script and lesson; expectations are left out, as they hold for the
     // scenario in its original file
     write_parameters(stream, &s->parameters);
+    if (s->fit != NULL) {
+        write_fit(stream, s->fit);
+    }
     write_actions(stream, s);
     write_lesson(stream, s);
 }

@@ -190,6 +190,10 @@ status identify_fit(identification *id, fault *f);
 status identify_parameters(const identification *id, bool determined, parameters *p,
                            fault *f);
 
+// What the fit leaves open of the parameters that are determined, but for elements of
+// lists. Of no parameters where none has an error.
+scenario_fit identify_left_open(const identification *id);
+
 // The scenario whose run is compared with a trace: with the fitted values and what the
 // trace has of its own, it plays the recorded command back. It borrows from the base what
 // the base owns; its sensors are the base's. Of a trace whose columns have the signals'

@@ -57,6 +57,35 @@ status identify_add_path(identification *id, const char *text, fault *f)
     return STATUS_OK;
 }
 
+scenario_fit identify_left_open(const identification *id)
+{
+    scenario_fit open = {.count = 0};
+    int of[SCENARIO_FIT]; // the fit's parameter of each
+    for (int i = 0; i < id->count; i++) {
+        const fitted_parameter *fit = &id->fit[i];
+        const bool is_real = fit->axis.element == 0 &&
+                             parameter_table[fit->axis.parameter].type == PARAMETER_REAL;
+        if (fit->determined && fit->standard_error > 0 && is_real) {
+            of[open.count] = i;
+            open.errors[open.count] = fit->standard_error;
+            open.parameters[open.count++] = fit->axis.parameter;
+        }
+    }
+    for (int i = 0; i < open.count; i++) {
+        for (int k = 0; k < open.count; k++) {
+            const double *covariance = id->covariance;
+            const double variances =
+                covariance[of[i] * (id->count + 1)] * covariance[of[k] * (id->count + 1)];
+            double correlation = covariance[of[i] * id->count + of[k]] / sqrt(variances);
+            if (i == k) {
+                correlation = 1;
+            }
+            open.correlation[i * open.count + k] = fmin(fmax(correlation, -1), 1);
+        }
+    }
+    return open;
+}
+
 bool identify_at_end(const fitted_parameter *fit)
 {
     return fit->value == fit->low_most || fit->value == fit->high_most;

@@ -7,6 +7,7 @@
 #include "src/base/numbers.h"
 #include "src/base/random.h"
 #include "src/study/identify/identify.h"
+#include "src/scenario/fitted_arm.h"
 
 const char *identify_words(const identification *id, int k, char *text, size_t size)
 {
@@ -152,8 +153,7 @@ json_t *identify_json(const identification *id)
 }
 
 // Draws the parameters of one arm from the fit's covariance, given by its eigenvectors
-// and eigenvalues: along each eigenvector a normal number, the sum of 12 uniform ones
-// less 6.
+// and eigenvalues: along each eigenvector a normal number.
 static void draw_parameters(const identification *id, const double *directions,
                             const double *values, random_generator *random, double *drawn)
 {
@@ -162,10 +162,7 @@ static void draw_parameters(const identification *id, const double *directions,
         drawn[i] = id->fit[i].value;
     }
     for (int k = 0; k < p; k++) {
-        double normal = -6;
-        for (int i = 0; i < 12; i++) {
-            normal += random_uniform(random);
-        }
+        const double normal = random_about_normal(random);
         const double deviation = sqrt(fmax(values[k], 0));
         for (int i = 0; i < p; i++) {
             drawn[i] += normal * deviation * directions[k * p + i] * id->fit[i].scale;
@@ -202,15 +199,6 @@ static void write_line(FILE *stream, const char *path, const fitted_parameter *f
 
 void identify_write_set(FILE *stream, const identification *id)
 {
-    // what a law is told of a parameter, as a factor of the true value
-    const struct {
-        int parameter, belief;
-    } beliefs[] = {
-        {PARAMETER_INDEX(arm.k2), PARAMETER_INDEX(belief.k2_factor)},
-        {PARAMETER_INDEX(arm.mass), PARAMETER_INDEX(belief.mass_factor)},
-        {PARAMETER_INDEX(arm.hub_inertia), PARAMETER_INDEX(belief.inertia_factor)},
-        {PARAMETER_INDEX(motor.torque_constant), PARAMETER_INDEX(belief.torque_factor)},
-        {PARAMETER_INDEX(motor.stiction), PARAMETER_INDEX(belief.friction_factor)}};
     double drawn[IDENTIFY_CASES][IDENTIFY_PATHS];
     random_generator random;
     double directions[IDENTIFY_PATHS * IDENTIFY_PATHS], values[IDENTIFY_PATHS] = {0};
@@ -238,14 +226,11 @@ void identify_write_set(FILE *stream, const identification *id)
         fputs(with, stream);
         with = "with ";
         write_line(stream, fit->axis.name, fit, drawn, i, NULL);
-        for (size_t k = 0; k < sizeof beliefs / sizeof *beliefs; k++) {
-            if (strcmp(parameter_table[beliefs[k].parameter].path, fit->axis.name) == 0) {
-                const double belief =
-                    parameter_get(&id->base->parameters, beliefs[k].belief);
-                fputs(with, stream);
-                write_line(stream, parameter_table[beliefs[k].belief].path, fit, drawn, i,
-                           &belief);
-            }
+        const int told = fitted_arm_belief(fit->axis.parameter);
+        if (told >= 0) {
+            const double belief = parameter_get(&id->base->parameters, told);
+            fputs(with, stream);
+            write_line(stream, parameter_table[told].path, fit, drawn, i, &belief);
         }
     }
 }

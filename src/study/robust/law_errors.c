@@ -7,13 +7,14 @@
 
 #include "src/base/plain_math.h"
 #include "src/base/random.h"
+#include "src/scenario/fitted_arm.h"
 
 // A case that is being drawn.
 typedef struct draft {
     drawn_case *made;
     const parameters *around;
     random_generator chance;
-    double rate;          // of samples [Hz], 0: the scenario's
+    double rate;          // of samples [Hz]
     double jitter;        // of their instants [s]
     char *jitter_setting; // NULL: none
 } draft;
@@ -222,11 +223,11 @@ static void draw_jitter(draft *d)
     d->jitter_setting = add(d, "control.jitter=%.3g", d->jitter);
 }
 
-// A jitter beyond the period of the drawn rate becomes that period.
+// A jitter beyond the period of the samples becomes that period.
 static void keep_jitter_within_period(draft *d)
 {
     const double period = 0.999 / d->rate;
-    if (d->jitter_setting != NULL && d->rate > 0 && d->jitter > period) {
+    if (d->jitter_setting != NULL && d->jitter > period) {
         snprintf(d->jitter_setting, DRAWN_SETTING_LENGTH, "control.jitter=%.6g", period);
     }
 }
@@ -292,38 +293,39 @@ static const struct error_kind {
     void (*draw)(draft *d);
     error_subject of;
     int tickets;
+    bool of_arm; // recordings tell of it
 } kinds[LAW_ERRORS] = {
-    {"giving wall", draw_giving_wall, OF_WALL, 2},
-    {"light face", draw_light_face, OF_WALL, 1},
-    {"heavy face", draw_heavy_face, OF_WALL, 1},
-    {"soft wall", draw_soft_wall, OF_WALL, 1},
-    {"restitution", draw_restitution, OF_WALL, 2},
-    {"tip mass", draw_tip_mass, OF_TIP_MASS, 2},
-    {"push", draw_push, OF_PUSH, 2},
-    {"rate", draw_rate, OF_RATE, 2},
-    {"delay", draw_delay, OF_DELAY, 2},
-    {"tip sensor", draw_tip_sensor, OF_TIP_SENSOR, 1},
-    {"hub sensors", draw_hub_sensors, OF_HUB_SENSORS, 1},
-    {"scattered samples", draw_scattered_samples, OF_SAMPLES, 1},
-    {"links", draw_links, OF_JOINTS, 5},
-    {"believed mass", draw_believed_mass, OF_BELIEVED_MASS, 1},
-    {"believed inertia", draw_believed_inertia, OF_BELIEVED_INERTIA, 1},
-    {"believed friction", draw_believed_friction, OF_FRICTION, 1},
-    {"believed torque", draw_believed_torque, OF_BELIEVED_TORQUE, 2},
-    {"believed stiffness", draw_believed_stiffness, OF_BELIEVED_STIFFNESS, 1},
-    {"believed wall", draw_believed_wall, OF_BELIEVED_WALL, 2},
-    {"hub spring", draw_hub_spring, OF_JOINTS, 1},
-    {"start", draw_start, OF_START, 1},
-    {"flat wall", draw_flat_wall, OF_WALL_KIND, 1},
-    {"length", draw_length, OF_LENGTH, 1},
-    {"joint stiffness", draw_joint_stiffness, OF_JOINTS, 1},
-    {"hub inertia", draw_hub_inertia, OF_HUB_INERTIA, 1},
-    {"stiction", draw_stiction, OF_FRICTION, 1},
-    {"converters", draw_converters, OF_TIP_SENSOR, 1},
-    {"rise time", draw_rise_time, OF_TIP_SENSOR, 1},
-    {"inductance", draw_inductance, OF_INDUCTANCE, 1},
-    {"jitter", draw_jitter, OF_SAMPLES, 1},
-    {"stiffening", draw_stiffening, OF_JOINTS, 1},
+    {"giving wall", draw_giving_wall, OF_WALL, 2, false},
+    {"light face", draw_light_face, OF_WALL, 1, false},
+    {"heavy face", draw_heavy_face, OF_WALL, 1, false},
+    {"soft wall", draw_soft_wall, OF_WALL, 1, false},
+    {"restitution", draw_restitution, OF_WALL, 2, false},
+    {"tip mass", draw_tip_mass, OF_TIP_MASS, 2, true},
+    {"push", draw_push, OF_PUSH, 2, false},
+    {"rate", draw_rate, OF_RATE, 2, false},
+    {"delay", draw_delay, OF_DELAY, 2, false},
+    {"tip sensor", draw_tip_sensor, OF_TIP_SENSOR, 1, false},
+    {"hub sensors", draw_hub_sensors, OF_HUB_SENSORS, 1, false},
+    {"scattered samples", draw_scattered_samples, OF_SAMPLES, 1, false},
+    {"links", draw_links, OF_JOINTS, 5, true},
+    {"believed mass", draw_believed_mass, OF_BELIEVED_MASS, 1, true},
+    {"believed inertia", draw_believed_inertia, OF_BELIEVED_INERTIA, 1, true},
+    {"believed friction", draw_believed_friction, OF_FRICTION, 1, true},
+    {"believed torque", draw_believed_torque, OF_BELIEVED_TORQUE, 2, true},
+    {"believed stiffness", draw_believed_stiffness, OF_BELIEVED_STIFFNESS, 1, true},
+    {"believed wall", draw_believed_wall, OF_BELIEVED_WALL, 2, false},
+    {"hub spring", draw_hub_spring, OF_JOINTS, 1, true},
+    {"start", draw_start, OF_START, 1, false},
+    {"flat wall", draw_flat_wall, OF_WALL_KIND, 1, false},
+    {"length", draw_length, OF_LENGTH, 1, true},
+    {"joint stiffness", draw_joint_stiffness, OF_JOINTS, 1, true},
+    {"hub inertia", draw_hub_inertia, OF_HUB_INERTIA, 1, true},
+    {"stiction", draw_stiction, OF_FRICTION, 1, true},
+    {"converters", draw_converters, OF_TIP_SENSOR, 1, false},
+    {"rise time", draw_rise_time, OF_TIP_SENSOR, 1, false},
+    {"inductance", draw_inductance, OF_INDUCTANCE, 1, true},
+    {"jitter", draw_jitter, OF_SAMPLES, 1, false},
+    {"stiffening", draw_stiffening, OF_JOINTS, 1, true},
 };
 
 enum { MOST_TICKETS = 64 };
@@ -334,12 +336,14 @@ const char *law_error_name(int kind)
     return kinds[kind].name;
 }
 
-// The kind of each ticket. Returns how many there are.
-static size_t list_tickets(int *kind_of)
+// The kind of each ticket, without those of an arm that was fitted. Returns how many
+// there are.
+static size_t list_tickets(int *kind_of, bool fitted)
 {
     size_t count = 0;
     for (int kind = 0; kind < LAW_ERRORS; kind++) {
-        for (int i = 0; i < kinds[kind].tickets; i++) {
+        const int tickets = fitted && kinds[kind].of_arm ? 0 : kinds[kind].tickets;
+        for (int i = 0; i < tickets; i++) {
             assert(count < MOST_TICKETS);
             kind_of[count++] = kind;
         }
@@ -347,17 +351,39 @@ static size_t list_tickets(int *kind_of)
     return count;
 }
 
-drawn_case drawn_case_of(const parameters *around, uint64_t seed)
+// Adds an arm that the recordings leave possible, of which the law is told the fitted
+// one.
+static void draw_fitted_arm(draft *d, const scenario *around)
+{
+    double values[SCENARIO_FIT];
+    fitted_arm_draw(around, &d->chance, values);
+    for (int i = 0; i < around->fit->count; i++) {
+        const int parameter = around->fit->parameters[i];
+        add(d, "%s=%.9g", parameter_table[parameter].path, values[i]);
+        const int belief = fitted_arm_belief(parameter);
+        if (belief >= 0) {
+            add(d, "%s=%.9g", parameter_table[belief].path,
+                fitted_arm_believed(around, parameter, values[i]));
+        }
+    }
+}
+
+drawn_case drawn_case_of(const scenario *around, uint64_t seed)
 {
     drawn_case c = {.setting_count = 0};
-    draft d = {.made = &c, .around = around};
+    draft d = {.made = &c,
+               .around = &around->parameters,
+               .rate = around->parameters.control.rate};
     random_seed(&d.chance, seed);
+    if (around->fit != NULL) {
+        draw_fitted_arm(&d, around);
+    }
 
     // two or three kinds: draw tickets in random order, and skip those whose subject
     // another error has changed
     int kind_of[MOST_TICKETS];
     size_t order[MOST_TICKETS];
-    const size_t tickets = list_tickets(kind_of);
+    const size_t tickets = list_tickets(kind_of, around->fit != NULL);
     random_permutation(&d.chance, order, tickets);
     const int wanted = 2 + draw_below(&d, LAW_ERRORS_A_CASE - 1);
     unsigned changed = 0;

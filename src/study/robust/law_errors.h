@@ -9,7 +9,7 @@
 // The kinds of errors, and at most so many in a case.
 enum { LAW_ERRORS = 31, LAW_ERRORS_A_CASE = 3 };
 
-enum { DRAWN_CASE_SETTINGS = 24, DRAWN_SETTING_LENGTH = 64 };
+enum { DRAWN_CASE_SETTINGS = 48, DRAWN_SETTING_LENGTH = 64 };
 
 // A case: what differs from the scenario.
 typedef struct drawn_case {
@@ -26,7 +26,11 @@ const char *law_error_name(int kind);
 // Draws a case around a scenario. Ranges of length, joint stiffness, hub inertia and
 // start are those of the scenario's own values times a factor, or a distance from its
 // wall; all others stand for themselves. The same seed and scenario give the same case.
-drawn_case drawn_case_of(const parameters *around, uint64_t seed);
+//
+// Around a scenario that was fitted to recordings each case has an arm that these leave
+// possible (src/scenario/fitted_arm.h), of which the law is told the fitted one, and no
+// other error of the arm.
+drawn_case drawn_case_of(const scenario *around, uint64_t seed);
 
 // The scenario of a case. It borrows all but its parameters and actions from `base`; the
 // actions, those of the base and the push if there is one and `pushed` asks for it, lie

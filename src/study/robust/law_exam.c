@@ -29,6 +29,7 @@ typedef struct exam_work {
     action *actions; // of each run, room for those of the base and a push
     exam_run *runs;
     summary *summaries;
+    bool *taken; // whether a run was done
 } exam_work;
 
 static void exam_work_finish(exam_work *w)
@@ -36,6 +37,7 @@ static void exam_work_finish(exam_work *w)
     free(w->actions);
     free(w->runs);
     free(w->summaries);
+    free(w->taken);
 }
 
 static exam_verdict *verdict_at(const law_exam *e, int law, int force, size_t which)
@@ -125,6 +127,7 @@ static status take_run(void *context, size_t i, const summary *s, fault *f)
     exam_work *w = context;
     (void)f;
     w->summaries[i] = *s;
+    w->taken[i] = true;
     w->exam->done++;
     return STATUS_OK;
 }
@@ -179,12 +182,23 @@ static exam_verdict judge_law_run(const drawn_case *c, double force, double open
     return v;
 }
 
-// Judges all runs, in the order in which they are listed.
-static void judge_law_runs(exam_work *w, size_t runs)
+// How many cases from the first on have all of their runs.
+static size_t count_whole_cases(const exam_work *w)
+{
+    for (size_t i = 0; i < w->exam->runs; i++) {
+        if (!w->taken[i]) {
+            return w->runs[i].of_case;
+        }
+    }
+    return w->exam->asked.cases;
+}
+
+// Judges all runs of the exam's cases, in the order in which they are listed.
+static void judge_law_runs(exam_work *w)
 {
     law_exam *e = w->exam;
     double open_loop = (double)NAN;
-    for (size_t i = 0; i < runs; i++) {
+    for (size_t i = 0; i < e->runs && w->runs[i].of_case < e->asked.cases; i++) {
         const exam_run *run = &w->runs[i];
         const drawn_case *c = &e->cases[run->of_case];
         if (run->law < 0) {
@@ -228,7 +242,7 @@ status law_exam_run(law_exam *e, const exam_request *asked, const exam_options *
         return fault_no_memory(f);
     }
     for (size_t i = 0; i < asked->cases; i++) {
-        e->cases[i] = drawn_case_of(&asked->base->parameters, asked->seed + i);
+        e->cases[i] = drawn_case_of(asked->base, asked->seed + i);
     }
 
     // the list of runs, with room for each one's actions and summary
@@ -239,8 +253,9 @@ status law_exam_run(law_exam *e, const exam_request *asked, const exam_options *
                    .options = options,
                    .actions = calloc(runs * room, sizeof *w.actions),
                    .runs = calloc(runs, sizeof *w.runs),
-                   .summaries = calloc(runs, sizeof *w.summaries)};
-    if (w.actions == NULL || w.runs == NULL || w.summaries == NULL) {
+                   .summaries = calloc(runs, sizeof *w.summaries),
+                   .taken = calloc(runs, sizeof *w.taken)};
+    if (w.actions == NULL || w.runs == NULL || w.summaries == NULL || w.taken == NULL) {
         return fault_no_memory(f);
     }
     e->runs = list_runs(e, w.runs);
@@ -254,11 +269,13 @@ status law_exam_run(law_exam *e, const exam_request *asked, const exam_options *
                      .stop = options->stop,
                      .abandon = options->abandon};
     TRY(batch_run(&b, options->jobs, f));
-    if (e->done < runs) {
-        return fault_set(f, STATUS_STOPPED, "stopped: %zu of %zu runs were done", e->done,
-                         runs);
-    }
-    judge_law_runs(&w, runs);
+
+    // an interrupt leaves the first cases
+    e->asked.cases = count_whole_cases(&w);
+    judge_law_runs(&w);
+    FAULT_IF(e->done < runs, f, STATUS_STOPPED,
+             "stopped: %zu of %zu cases were done, none is judged", e->asked.cases,
+             asked->cases);
     return STATUS_OK;
 }
 
@@ -293,7 +310,7 @@ exam_share law_exam_share(const law_exam *e, int law, int force, int kind)
     const double middle = (s.share + z * z / (2 * n)) / (1 + z * z / n);
     const double half =
         z / (1 + z * z / n) * sqrt(s.share * (1 - s.share) / n + z * z / (4 * n * n));
-    s.low = middle - half;
+    s.low = fmax(middle - half, 0);
     s.high = middle + half;
     return s;
 }

@@ -65,8 +65,9 @@ typedef struct exam_options {
 } exam_options;
 
 // Draws, runs and judges. STATUS_BAD_ARGUMENT where an error cannot be drawn around the
-// scenario, STATUS_STOPPED if *stop became true, STATUS_NO_MEMORY. law_exam_finish in any
-// case.
+// scenario; STATUS_STOPPED if *stop became true, and then asked.cases are the first
+// cases, whose runs were all done, and those are judged; STATUS_NO_MEMORY.
+// law_exam_finish in any case.
 status law_exam_run(law_exam *e, const exam_request *asked, const exam_options *options,
                     fault *f);
 void law_exam_finish(law_exam *e);

@@ -117,6 +117,21 @@ void exam_rows_finish(exam_rows *rows)
     rows->object = NULL;
 }
 
+// What the scenario's fit says of the arms of the cases: an empty list without one.
+static json_t *fit_json(const law_exam *e)
+{
+    const scenario *base = e->asked.base;
+    json_t *list = json_array();
+    for (int i = 0; base->fit != NULL && i < base->fit->count; i++) {
+        const int parameter = base->fit->parameters[i];
+        json_add(list, json_of("path:t value:n standard_error:n",
+                               parameter_table[parameter].path,
+                               parameter_get(&base->parameters, parameter),
+                               base->fit->errors[i]));
+    }
+    return list;
+}
+
 // Whether the rows are of the cases of an exam, each force with a mark for every case.
 static status check_rows(const exam_rows *rows, const law_exam *e, fault *f)
 {
@@ -125,15 +140,25 @@ static status check_rows(const exam_rows *rows, const law_exam *e, fault *f)
     FAULT_IF(!json_is_integer(cases) || !json_is_integer(seed), f, STATUS_BAD_ARGUMENT,
              "'%s' is no exam of control laws, expected what robust --draw --json wrote",
              rows->path);
-    FAULT_IF((size_t)json_integer_value(cases) != e->asked.cases ||
+    FAULT_IF((size_t)json_integer_value(cases) < e->asked.cases ||
                  (uint64_t)json_integer_value(seed) != e->asked.seed,
              f, STATUS_BAD_ARGUMENT,
              "'%s' has %lld cases from seed %lld, expected %zu from %llu", rows->path,
              (long long)json_integer_value(cases), (long long)json_integer_value(seed),
              e->asked.cases, (unsigned long long)e->asked.seed);
+
+    // drawn around the same arm
+    json_t *fit = fit_json(e);
+    const json_t *other = json_object_get(rows->object, "fit");
+    const bool none = json_array_size(other) == 0 && json_array_size(fit) == 0;
+    const bool same = none || json_equal(other, fit);
+    json_decref(fit);
+    FAULT_IF(!same, f, STATUS_BAD_ARGUMENT,
+             "'%s' is of cases around another fit, expected those of this scenario",
+             rows->path);
     for (int k = 0; k < e->asked.force_count; k++) {
         const char *marks = row_marks(rows, e->asked.forces[k]);
-        FAULT_IF(marks == NULL || strlen(marks) != e->asked.cases, f, STATUS_BAD_ARGUMENT,
+        FAULT_IF(marks == NULL || strlen(marks) < e->asked.cases, f, STATUS_BAD_ARGUMENT,
                  "'%s' has no row of each case at %g N", rows->path, e->asked.forces[k]);
     }
     return STATUS_OK;
@@ -248,12 +273,32 @@ static void print_gains(FILE *stream, const law_exam *e, int law, const exam_row
     }
 }
 
+// Says that the arms of the cases are those that a fit leaves possible.
+static void print_fit(FILE *stream, const scenario *base)
+{
+    if (base->fit == NULL) {
+        return;
+    }
+    fputs("the arm of each case is drawn from the fit to your recordings", stream);
+    for (int i = 0; i < base->fit->count; i++) {
+        const int parameter = base->fit->parameters[i];
+        const parameter_info *info = &parameter_table[parameter];
+        fprintf(stream, "%s\n  %-24s%12.5g, standard error %.2g %s", i == 0 ? ":" : "",
+                info->path, parameter_get(&base->parameters, parameter),
+                base->fit->errors[i], info->unit);
+    }
+    fputc('\n', stream);
+}
+
 void law_exam_text(FILE *stream, const law_exam *e, const exam_rows *beside)
 {
     fprintf(stream,
-            "%s: %zu cases from seed %llu, each with two or three errors of arm, wall, "
-            "sensors, computer or beliefs\n\n",
-            e->asked.base->name, e->asked.cases, (unsigned long long)e->asked.seed);
+            "%s: %zu cases from seed %llu, each with two or three errors of %swall, "
+            "sensors, computer or beliefs\n",
+            e->asked.base->name, e->asked.cases, (unsigned long long)e->asked.seed,
+            e->asked.base->fit == NULL ? "arm, " : "");
+    print_fit(stream, e->asked.base);
+    fputc('\n', stream);
     fprintf(stream,
             "cases within the bounds [%%], and the 95 %% interval of the share; "
             "differences case by case\n%22s",
@@ -407,6 +452,7 @@ json_t *law_exam_json(const law_exam *e, const exam_rows *beside)
     json_t *whole = json_of("scenario:t", e->asked.base->name);
     json_put(whole, "cases", json_integer((json_int_t)e->asked.cases));
     json_put(whole, "seed", json_integer((json_int_t)e->asked.seed));
+    json_put(whole, "fit", fit_json(e));
     json_put(whole, "results", results);
     return whole;
 }

@@ -29,6 +29,7 @@ typedef struct fit_outcome {
     identification fit;
     identification validation; // no traces: none was asked for
     scenario fitted;           // with the fitted values
+    scenario_fit left_open;    // what the fit leaves open of them
     links_comparison compared;
 } fit_outcome;
 
@@ -150,6 +151,10 @@ static status fit_and_judge(const arguments *a, fit_outcome *o, fault *f)
     parameters fitted;
     TRY(identify_parameters(&o->fit, true, &fitted, f));
     TRY(scenario_take_parameters(&o->fitted, &fitted, f));
+    o->left_open = identify_left_open(&o->fit);
+    if (o->left_open.count > 0) {
+        o->fitted.fit = &o->left_open;
+    }
 
     if (a->validate != NULL) {
         TRY(validate_fit(a, o, f));

@@ -636,7 +636,9 @@ const command robust_command = {
         "in the manual, at each --force. A run is within the bounds with at most 30 % "
         "smoothed overshoot, settled in 0.3 s (0.6 s where contact is lost), 5 % steady "
         "error, and first contact at most 1.5 times as late as open-loop's. Shares are "
-        "given with their 95 % interval, by kind of error, and beside --before.\n\n"
+        "given with their 95 % interval, by kind of error, and beside --before. Around a "
+        "scenario of identify -o the arms are those that its recordings leave "
+        "possible.\n\n"
         "^C finishes the runs in hand, within five seconds, and judges what there is "
         "(exit status 130); with --db it goes on.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,

@@ -123,7 +123,8 @@ int robust_exam(const arguments *a, const scenario *s, const int *laws, int law_
     fault f = {.path = ""};
     const status ran = law_exam_run(&e, &asked, &options, &f);
     many_runs_end(&many);
-    if (ran != STATUS_OK) {
+    const bool is_part = ran == STATUS_STOPPED && e.asked.cases > 0;
+    if (ran != STATUS_OK && !is_part) {
         return complain_fault(&f);
     }
 
@@ -136,5 +137,11 @@ int robust_exam(const arguments *a, const scenario *s, const int *laws, int law_
         }
         found.before = &before;
     }
-    return write_results(a, &results, &found, true);
+    code = write_results(a, &results, &found, !is_part);
+    if (is_part) {
+        complain("stopped: %zu of %zu cases were done, the table is that of these",
+                 e.asked.cases, asked.cases);
+        return EXIT_FAILED;
+    }
+    return code;
 }
