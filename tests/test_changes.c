@@ -153,7 +153,7 @@ TEST(test_predictors_take_the_voltage_in_force)
 TEST(test_predictors_that_know_nothing_are_silent)
 {
     OPEN_EXPLORER(ex, "corrected/five-links");
-    press_shows(&ex, "i", "touching now: linearised 2.614 N");
+    press_shows(&ex, "i", "linearised 2.614 N");
     press_shows(&ex, ":set arm.links 2<Enter>i", "energy 1.25", "impact dynamics 1.66");
     OPEN_EXPLORER(printed, "thesis/fig-3-4");
     press_shows(&printed, "i", "energy ", "!linearised");
@@ -361,7 +361,13 @@ TEST(test_panes_follow_scenario_and_height)
 TEST(test_setpoints_and_limits_are_lines)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
-    assert_shows(&ex, "\u2508force_limit", "\u2508command");
+    assert_shows(&ex, "!\u2508force_limit", "\u2508command");
+    press_shows(
+        &ex,
+        ":open compare/touch<Enter>:axis 0 2 1<Enter>:set control.force_limit 1.5<Enter>",
+        "\u2508force_limit");
+    press(&ex, "u");
+    press_opens(&ex, "u", "compare/hybrid");
     press_shows(&ex, ":axis -12 12 5<Enter>", "\u2508voltage_limit");
     press_shows(&ex, ":open corrected/first-impact<Enter>2", "\u2508angle",
                 "!\u2508force");
@@ -405,7 +411,7 @@ TEST(test_the_arrow_has_its_head_on)
                 heads++;
             }
         }
-        assert_int_equal(heads, 1);
+        assert_int_equal(heads, width < 110 ? 1 : 2); // the tip from near by, too
     }
 }
 

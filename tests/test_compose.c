@@ -100,7 +100,7 @@ TEST(test_eighty_columns_show_what_a_first_visit_needs)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
-    for (EACH_TEXT(c, "force 1.2", "gap 0", "voltage", "0\u2524", "1 s", "0.10\u2524",
+    for (EACH_TEXT(c, "force 1.2", "gap 0", "voltage", "0\u2524", "1 s", "0.1\u2524",
                    "energy 1.48 N", "peak N", "impulse N s", "0.04426")) {
         assert_shows_at(&ex, 80, 24, *c);
     }

@@ -77,7 +77,7 @@ TEST(test_every_step_fits_a_small_screen)
     for (int i = 0; i < l->step_count; i++) {
         ex.model.lesson = (lesson_progress){.on = true, .step = i};
         assert_shows_at(&ex, 80, 24, "lesson, step");
-        assert_shows_at(&ex, 80, 24, "touching now: ");
+        assert_shows_at(&ex, 80, 24, "touching now");
 
         // its last word is on the screen
         const char *say = l->steps[i].say, *last = strrchr(say, ' ');
@@ -114,7 +114,7 @@ TEST(test_what_a_step_names_is_on_the_screen)
         {"beta-and-gamma", 3, false, "beta"},
         {"beta-and-gamma", 3, true, "ledger"},
         {"hybrid-law", 1, true, "approach impact [force]"},
-        {"hybrid-law", 2, false, "force 0.9"},
+        {"hybrid-law", 2, false, "reads 0.9"},
         {"hybrid-law", 3, false, "transition_time"},
         {"hybrid-law", 4, false, "transition_time"},
         {"what-a-sensor-sees", 1, true, "fsr"},

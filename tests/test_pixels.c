@@ -367,8 +367,8 @@ TEST(test_a_picture_that_failed_is_words)
 TEST(test_a_screen_without_pictures_has_dots)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press_shows(&ex, ":seek 0.35<Enter>", "1.294 N", "!tip, 100 mm");
-    press_shows(&ex, ":closeup on<Enter>", "tip, 100 mm");
+    press_shows(&ex, ":seek 0.35<Enter>", "1.294 N", "tip, 100 mm");
+    assert_shows_at(&ex, 80, 24, "!tip, 100 mm");
     press_shows(&ex, ":bending 5<Enter>", "bent 5 times");
 }
 

@@ -236,15 +236,21 @@ static bool begins_with_one(const char *line, const char *words)
     return strstr(words, word) != NULL;
 }
 
+// Lines of files that an earlier lab wrote, about what the screen now does by itself.
+static const char outgrown[] = " colourby colours lanes closeup ";
+
 // Carries out a line that says how runs are looked at, and none that does anything else.
 static bool carry_out_look(explorer_model *model, explorer_view *view,
                            explorer_input *input, const char *line)
 {
-    if (begins_with_one(line,
-                        " panes axis zoom mark trace phase spectrum signal lanes limit "
-                        "data sweep metric # "
-                        "residual band note ")) {
+    if (begins_with_one(line, " panes axis zoom mark trace phase spectrum signal limit "
+                              "data sweep metric # "
+                              "residual band note ")) {
         return explorer_execute(model, view, input, line);
+    }
+    if (begins_with_one(line, outgrown)) {
+        return act_refuse(input, "'%.60s' is passed over, the lab has no such choice now",
+                          line);
     }
     return act_refuse(input, "'%.60s' does not belong into a session", line);
 }
@@ -298,8 +304,7 @@ bool act_session(explorer_model *model, explorer_view *view, explorer_input *inp
 
 // The commands that :remember writes, with blanks round each.
 static const char remembered[] =
-    " theme glyphs pixels closeup mouse bending rate lanes slow speed "
-    "panes axis key unkey ";
+    " theme glyphs pixels mouse bending rate slow speed panes axis key unkey ";
 
 // Executes a line of the file, where only what :remember writes is taken.
 static bool execute_setting(explorer_model *model, explorer_view *view,
@@ -310,6 +315,9 @@ static bool execute_setting(explorer_model *model, explorer_view *view,
     if (line[begin] == '\0' || line[begin] == '#' ||
         begins_with_one(line + begin, remembered)) {
         return explorer_execute(model, view, input, line);
+    }
+    if (begins_with_one(line + begin, outgrown)) {
+        return true; // :remember drops it
     }
     return act_refuse(input, "this is no setting");
 }

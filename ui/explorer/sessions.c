@@ -122,7 +122,6 @@ static void add_looks(const explorer_model *model, const explorer_view *view,
                       session_file *file)
 {
     add_data(model, file);
-    add_line(file, "lanes %s", look_word(&view->looks, look_choice_of("lanes")));
     if (view->panes.chosen) {
         char shown[PANES + 1];
         explorer_shown_panes(view, shown);
@@ -174,9 +173,8 @@ static char *looks_worth_keeping(const explorer_model *model, const explorer_vie
         const char *line = file.lines[i];
         const bool remembered = g_str_has_prefix(line, "panes ") &&
                                 strcmp(line + strlen("panes "), view->kept_panes) == 0;
-        if (!remembered && !g_str_has_prefix(line, "lanes ") &&
-            !g_str_has_prefix(line, "zoom ") && !g_str_has_prefix(line, "signal ") &&
-            !g_str_has_prefix(line, "axis ")) {
+        if (!remembered && !g_str_has_prefix(line, "zoom ") &&
+            !g_str_has_prefix(line, "signal ") && !g_str_has_prefix(line, "axis ")) {
             g_string_append(text, line);
             g_string_append_c(text, '\n');
         }

@@ -353,7 +353,7 @@ bool act_changes(const explorer_model *model, explorer_view *view)
     return toggle_page(view, PANEL_CHANGES);
 }
 
-// Goes on to the next value of a choice, or to the one that is named.
+// Makes the choice that is named.
 static bool choose(explorer_view *view, explorer_input *input, const char *command,
                    const char *argument)
 {
@@ -368,23 +368,18 @@ static bool choose(explorer_view *view, explorer_input *input, const char *comma
         }
     }
 
-    // the one that is named draws the whole screen again
-    int *value = look_value(&view->looks, c);
-    if (named >= 0) {
-        *value = named;
-        view->looks.redraw = true;
-    } else if (argument[0] == '\0' && c->goes_round) {
-        *value = (*value + 1) % count;
-    } else {
+    if (named < 0) {
         return act_refuse(input, "'%s' is none of %s", argument, all);
     }
+    *look_value(&view->looks, c) = named;
+    view->looks.redraw = true;
 
     // what is said of this value, or of any
     const char *says = c->says[0];
     if (c->says[1] != NULL) {
-        says = c->says[*value];
+        says = c->says[named];
     }
-    return says == NULL || act_tell(input, says, c->words[*value]);
+    return says == NULL || act_tell(input, says, c->words[named]);
 }
 
 bool act_theme(explorer_view *view, explorer_input *input, const char *argument)
@@ -402,19 +397,9 @@ bool act_pixels(explorer_view *view, explorer_input *input, const char *argument
     return choose(view, input, "pixels", argument);
 }
 
-bool act_closeup(explorer_view *view, explorer_input *input, const char *argument)
-{
-    return choose(view, input, "closeup", argument);
-}
-
 bool act_mouse(explorer_view *view, explorer_input *input, const char *argument)
 {
     return choose(view, input, "mouse", argument);
-}
-
-bool act_lanes(explorer_view *view, explorer_input *input, const char *argument)
-{
-    return choose(view, input, "lanes", argument);
 }
 
 bool act_rate(explorer_view *view, explorer_input *input, const char *argument)

@@ -8,7 +8,7 @@
 #include "ui/terminal/pictures.h"
 
 enum {
-    CLOSE_UP_FROM = 60, // width of the panel from which on there is a close-up [cells]
+    CLOSE_UP_FROM = 70, // width of the panel from which on there is a close-up [cells]
     LEAST_FRAME = 3,    // width and height of a frame that has anything in it [cells]
 };
 
@@ -366,16 +366,12 @@ static void draw_close_up(const explorer_model *model, const explorer_view *view
     draw_stage(model, view, &g);
 }
 
-// Draws the close-up into the last third of an area, if it is wanted and has room;
-// returns what it leaves.
-static area draw_wanted_close_up(const explorer_model *model, const explorer_view *view,
+// Draws the close-up into the last third of an area, if there is a wall and room; returns
+// what it leaves.
+static area draw_close_up_beside(const explorer_model *model, const explorer_view *view,
                                  screen *s, area a)
 {
-    bool wanted = view->looks.close_up == CLOSE_UP_ON;
-    if (view->looks.close_up == CLOSE_UP_AUTO) {
-        wanted = s->pictures != NULL;
-    }
-    if (!wanted || a.width < CLOSE_UP_FROM ||
+    if (a.width < CLOSE_UP_FROM ||
         model->session.effective.parameters.wall.kind == WALL_NONE) {
         return a;
     }
@@ -441,7 +437,8 @@ static void add_stage(layout *lay, const stage *g)
     layout_add_hit(lay, (hit_area){PANEL_ARM, PART_BODY, 0, place});
 }
 
-// The arm, if wanted with its contact from near by, and what is to be said of it.
+// The arm, where there is room with its contact from near by, and what is to be said of
+// it.
 static void draw_arm(const explorer_model *model, const explorer_view *view, layout *lay,
                      screen *s, area a)
 {
@@ -449,7 +446,7 @@ static void draw_arm(const explorer_model *model, const explorer_view *view, lay
     if (a.width < LEAST_FRAME || a.height < LEAST_FRAME) {
         return;
     }
-    a = draw_wanted_close_up(model, view, s, a);
+    a = draw_close_up_beside(model, view, s, a);
 
     // the title says how it is drawn
     char title[LINE_TEXT] = "arm";

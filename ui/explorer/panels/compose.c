@@ -271,8 +271,9 @@ static int draw_prompt(const explorer_input *input, screen *s)
 {
     const prompt *p = &input->prompt;
     const char *said = input->message.text;
-    const int y = s->height - 1, room = s->width - 2;
+    const int y = s->height - 2, room = s->width - 2;
     blank_row(s, y);
+
     // where all has no room its part before the cursor is shown, which is always seen
     char text[LINE_TEXT];
     const bool whole = text_cells(p->text) < room - 5;
@@ -302,7 +303,7 @@ static int draw_prompt(const explorer_input *input, screen *s)
 // The filter that is being typed.
 static void draw_filter(const filters *f, screen *s)
 {
-    const int y = s->height - 1;
+    const int y = s->height - 2;
     blank_row(s, y);
     const int x =
         screen_print(s, 0, y, s->width - 2, INK_TITLE, "/%s", f->text[f->typing]);
@@ -349,10 +350,11 @@ static void draw_hints(const explorer_view *view, screen *s)
             bar_add(&b, hints[i].rank, "%.20s %s", keys, hints[i].does);
         }
     }
-    draw_bar(s, s->height - 1, s->width - 1, 0, INK_DIM, &b);
+    draw_bar(s, s->height - 2, s->width - 1, 0, INK_DIM, &b);
 }
 
-// Draws the prompt, the message or hints in the last rows and returns how many it took.
+// Draws the prompt, the message or hints in the rows above the status, which stays where
+// it is, and returns how many it took.
 static int draw_bottom(const explorer_view *view, const explorer_input *input, screen *s)
 {
     if (input->prompt.open) {
@@ -369,7 +371,7 @@ static int draw_bottom(const explorer_view *view, const explorer_input *input, s
 
     // a long message covers some of the panels until the next key, one of blanks nothing
     const ink shade = input->message.warning ? INK_WARNING : INK_TEXT;
-    const int rows = draw_message(input, s, s->height, shade);
+    const int rows = draw_message(input, s, s->height - 1, shade);
     return rows > 0 ? rows : 1;
 }
 
@@ -459,7 +461,7 @@ static void draw_tabs(const layout *lay, screen *s, area a)
 static int rows_of_stack(const explorer_model *model, const explorer_view *view,
                          layout *lay, screen_size body, int rows[PANEL_IDS])
 {
-    enum { LEAST = 4 };
+    enum { LEAST = 5 };
     const panel_id chosen = view->side.panel;
     const bool chosen_has_much = chosen == PANEL_SWEEP || chosen == PANEL_STATISTICS;
     int sum = 0;
@@ -499,7 +501,7 @@ static void draw_stack(const explorer_model *model, const explorer_view *view,
 }
 
 // Draws what goes across the screen into the first rows of an area, results and a lesson
-// if there is one, and into its last one; returns what they leave.
+// if there is one; returns what they leave.
 static area draw_strips(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area a)
 {
@@ -513,17 +515,6 @@ static area draw_strips(const explorer_model *model, const explorer_view *view,
             panel_draw(id, model, view, lay, s, (area){0, a.y, s->width, rows});
         }
         a = area_below(a, rows);
-    }
-    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
-        if (panel_place_of(id) != PLACE_FOOT) {
-            continue;
-        }
-        const screen_size left = {s->width, a.height};
-        const int rows = panel_of(id)->rows(model, view, left);
-        a.height -= rows;
-        if (rows > 0) {
-            panel_draw(id, model, view, lay, s, area_below(a, a.height));
-        }
     }
     return a;
 }
@@ -606,7 +597,7 @@ void compose_screen(const explorer_model *model, const explorer_view *view,
         panel_draw(view->page, model, view, lay, s, body);
     }
     const int rows = draw_bottom(view, input, s);
-    draw_status(model, view, s, s->height - 1 - rows);
+    draw_status(model, view, s, s->height - 1);
     if (palette_shows(&input->prompt)) {
         const area above = {0, 1, s->width, s->height - 2 - rows};
         draw_palette(view, &input->prompt, lay, s, above);

@@ -1,12 +1,9 @@
-// The panel of the control law: its modes and the lock on one, and what it read, wanted
-// and sent at its last sample.
+// The words of the control law: its modes and the lock on one, and what it read and sent
+// at its last sample.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { NUMBERS_AT = 16, UNITS_AT = 25 }; // columns [cells]
-enum { TALL = 10, BRIEF = 7 };           // rows of the panel [cells]
 
 // The cells that a mode's name takes, the present one in brackets.
 static int mode_width(const law_modes *m, int index, bool present)
@@ -85,115 +82,42 @@ static void draw_lock(const explorer_model *model, const explorer_view *view, sc
     }
 }
 
-// A line of the table: name, value and unit of a quantity.
-static void draw_quantity(screen *s, area a, const char *name, double value,
-                          const char *unit)
+// The command and the reading, and whether the amplifier gets less than that.
+static void draw_sample(screen *s, area a, const parameters *p, const sample *row)
 {
-    area_text(s, a, INK_TEXT, name);
-    area_print(s, area_right(a, NUMBERS_AT), INK_TITLE, "%8s", draw_number(value).text);
-    if (isfinite(value)) {
-        area_text(s, area_right(a, UNITS_AT), INK_DIM, unit);
-    }
-}
-
-// The command, and whether the amplifier gets less than that.
-static void draw_command(screen *s, area a, const parameters *p, double command)
-{
-    draw_quantity(s, a, "command", command, "V");
-    if (fabs(command) >= p->motor.voltage_limit) {
-        screen_text(s, a.x + 8, a.y, 9, INK_WARNING, "saturated");
-        area_print(s, area_right(a, UNITS_AT + 2), INK_WARNING, ">%g",
+    const int used =
+        area_print(s, a, INK_TEXT, "command %s V ", draw_number(row->command).text);
+    if (fabs(row->command) >= p->motor.voltage_limit) {
+        area_print(s, area_right(a, used), INK_WARNING, "saturated at %g V",
                    p->motor.voltage_limit);
     }
+    area_print(s, area_row(a, 1), INK_TEXT, "reads %s of %g N",
+               draw_number(row->force_reading).text, p->control.force);
 }
 
-// A number with few decimals, from 10 on with as few digits; "-" for none.
-static number_text brief_number(int decimals, double value)
-{
-    number_text n = {"-"};
-    if (isfinite(value) && fabs(value) < 10) {
-        snprintf(n.text, sizeof n.text, "%.*f", decimals, value);
-    } else if (isfinite(value)) {
-        snprintf(n.text, sizeof n.text, "%.*g", decimals, value);
-    }
-    return n;
-}
+enum { ROWS = 5 };
 
-// Two lines for what the tall panel has a table for.
-static void draw_brief(screen *s, area a, const sample *row, const parameters *p)
-{
-    // not every law needs an angle
-    if (isfinite(row->desired_angle)) {
-        area_print(s, a, INK_TEXT, "wants %s rad, %s rad/s",
-                   brief_number(3, row->desired_angle).text,
-                   brief_number(2, row->desired_velocity).text);
-    } else {
-        area_text(s, a, INK_DIM, "wants no angle");
-    }
-    area_print(s, area_row(a, 1), INK_TEXT, "force %s, calc. %s of %g N",
-               brief_number(2, row->force_reading).text,
-               brief_number(2, row->calculated_force).text, p->control.force);
-}
-
-// Setpoint and readings of the law, a line each.
-static void draw_readings(screen *s, area a, const sample *row, const parameters *p)
-{
-    const struct {
-        const char *name, *unit;
-        double value;
-    } quantities[] = {{"desired angle", "rad", row->desired_angle},
-                      {"desired velocity", "rad/s", row->desired_velocity},
-                      {"force reading", "N", row->force_reading},
-                      {"calculated force", "N", row->calculated_force},
-                      {"force commanded", "N", p->control.force}};
-    enum { QUANTITIES = sizeof quantities / sizeof quantities[0] };
-    for (int i = 0; i < QUANTITIES; i++) {
-        draw_quantity(s, area_row(a, i), quantities[i].name, quantities[i].value,
-                      quantities[i].unit);
-    }
-}
-
-// Tall enough for its table, or brief, or not at all.
 static int controller_rows(const explorer_model *model, const explorer_view *view,
                            screen_size body)
 {
-    if (!model_has_law(model)) {
-        return 0;
-    }
     (void)view;
-    if (body.height >= 24) {
-        return TALL;
-    }
-    if (body.height >= 11) {
-        return BRIEF;
-    }
-    return 0;
+    enum { LEAST = 11 };
+    return model_has_law(model) && body.height >= LEAST ? ROWS : 0;
 }
 
-// Modes, lock and command of the law, then its readings as there is room.
+// Name, modes, lock, command and reading of the law.
 static void draw_controller(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area a)
 {
     (void)lay;
     const sample *row = session_sample(&model->session);
     const parameters p = model_parameters(model);
-    char title[128];
-    snprintf(title, sizeof title, "%s, %g Hz", control_law_table[p.control.law].word,
-             p.control.rate);
-    area_frame(s, a, INK_FRAME, title);
-
-    // modes, lock and command always
-    const area inside = area_inside(a), rest = area_below(inside, 3);
-    draw_modes(&model->modes, s, area_row(inside, 0), row->controller_mode);
-    draw_lock(model, view, s, area_row(inside, 1));
-    draw_command(s, area_row(inside, 2), &p, row->command);
-
-    // the rest in brief where rows are few
-    if (a.height < TALL) {
-        draw_brief(s, rest, row, &p);
-    } else {
-        draw_readings(s, rest, row, &p);
-    }
+    const area lines = {a.x + 2, a.y, a.width - 3, a.height};
+    area_print(s, lines, INK_DIM, "%s, %g Hz", control_law_table[p.control.law].word,
+               p.control.rate);
+    draw_modes(&model->modes, s, area_row(lines, 1), row->controller_mode);
+    draw_lock(model, view, s, area_row(lines, 2));
+    draw_sample(s, area_below(lines, 3), &p, row);
 }
 
 const panel controller_panel = {.name = "controller",

@@ -540,7 +540,7 @@ static void draw_pane(const explorer_model *model, const explorer_view *view, la
     draw_pane_curves(model, view, s, p, &f);
 }
 
-enum { TIME_AXIS = 2 }; // rows
+enum { LEAST_PANE = 3 }; // rows
 
 // How many panes are shown.
 static int count_shown_panes(const pane_set *panes)
@@ -576,17 +576,25 @@ static int choose_panes(const pane_set *set, int most, int chosen[PANES])
 }
 
 // Draws panes one below the other, as many as have room. That of force has half of the
-// rows, the others share what is left, rounded up.
+// rows, or more where the others have a few each; they share what is left, rounded up.
 static void draw_panes(const explorer_model *model, const explorer_view *view,
                        layout *lay, screen *s, area a, int most)
 {
+    enum { WANTED = 12 }; // rows of the force
     int chosen[PANES];
     const int count = choose_panes(&view->panes, most, chosen);
+    int force = a.height - LEAST_PANE * (count - 1);
+    if (force > WANTED) {
+        force = WANTED;
+    }
+    if (force < (a.height + 1) / 2) {
+        force = (a.height + 1) / 2;
+    }
     for (int i = 0; i < count; i++) {
         const int left = count - i;
         int height = (a.height + left - 1) / left;
         if (chosen[i] == 0 && count > 1) {
-            height = (a.height + 1) / 2;
+            height = force;
         }
         draw_pane(model, view, lay, s, chosen[i], (area){a.x, a.y, a.width, height});
         a = area_below(a, height);
@@ -605,14 +613,15 @@ static void tint_box(const zoom_box *b, screen *s)
 static void draw_curves(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area a)
 {
-    enum { LEAST_PANE = 3, LEAST_PLOT = 9 }; // height, width
+    enum { LEAST_PLOT = 9, LOW = 12 }; // width; rows that have few for a time axis
 
     // from below: the lanes, the time axis, the panes
-    const int lanes_height = lanes_rows(model, view, &lay->lanes, a.height);
-    const int panes_height = a.height - lanes_height - TIME_AXIS;
+    const int lanes_height = lanes_rows(model, view, a.height);
+    const int axis_height = a.height < LOW ? 1 : 2;
+    const int panes_height = a.height - lanes_height - axis_height;
     const area panes = {a.x, a.y, a.width, panes_height};
-    const area axis = {a.x, a.y + panes_height, a.width, TIME_AXIS};
-    const area lanes = {a.x, axis.y + TIME_AXIS, a.width, lanes_height};
+    const area axis = {a.x, a.y + panes_height, a.width, axis_height};
+    const area lanes = {a.x, axis.y + axis_height, a.width, lanes_height};
 
     // of two and more that of force has half of the rows
     int most = panes_height / LEAST_PANE;
@@ -629,7 +638,7 @@ static void draw_curves(const explorer_model *model, const explorer_view *view,
     }
 
     // for the mouse; its parts lie over that
-    lay->plot = (area){plot.x, plot.y, plot.width, panes_height + TIME_AXIS};
+    lay->plot = (area){plot.x, plot.y, plot.width, panes_height + axis_height};
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_BODY, 0, plot});
     draw_panes(model, view, lay, s, panes, most);
     if (view->box.held) {

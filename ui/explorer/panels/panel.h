@@ -115,13 +115,6 @@ typedef struct account_line {
     char text[ACCOUNT_SENTENCE];
 } account_line;
 
-// What a run contains for the lanes below its curves.
-typedef struct lane_survey {
-    unsigned long run; // 0: nothing is known
-    size_t rows;       // looked at
-    bool sticks, saturates;
-} lane_survey;
-
 typedef struct layout {
     hit_area hits[HIT_AREAS]; // later ones are on top
     int hit_count;
@@ -130,7 +123,6 @@ typedef struct layout {
     drawn_view drawn;             // the state's, brought up to date by drawing
     arm_extent extent;            // remembered
     linearised_answer linearised; // remembered
-    lane_survey lanes;            // remembered
     account_line account;         // remembered
 } layout;
 
@@ -303,15 +295,11 @@ bool draw_pane_view(const explorer_model *model, const explorer_view *view, scre
                     const pane *p, area a, value_range *axis);
 
 // --- lanes -----------------------------------------------------------------------------
-// The lanes below the curves, on the same time axis: contact of each run, the
-// controller's mode, intervals in which the hub sticks or the command exceeds its limit,
-// locks and changes. Above them, if the curves show only a part of the run, a map of the
-// whole run.
+// The lanes below the curves, on the same time axis: the modes of the law, contact of the
+// other runs. Above them, if the curves show only a part of the run, a map of the whole.
 
-// The number of rows of the lanes below curves of a given height. Examines the rows that
-// the run has gained since the last picture, so that empty lanes are omitted.
-int lanes_rows(const explorer_model *model, const explorer_view *view, lane_survey *known,
-               int height);
+// The number of rows of the lanes below curves of a given height.
+int lanes_rows(const explorer_model *model, const explorer_view *view, int height);
 
 // Draws the lanes in the number of rows given by lanes_rows; the area has the same
 // columns as the curves and their labels.

@@ -391,17 +391,39 @@ static void draw_instants(screen *s, area a, double from, double to)
     }
 }
 
-// Contact as a bar on the line of the axis, as far as the run has been seen.
-static void draw_contact_bar(const session *e, screen *s, area line, double from,
-                             double to)
+// Whether the arm touches in any of the rows between two instants [s]; of many a few are
+// looked at.
+static bool touches_between(const trace *t, double from, double to)
 {
-    const trace *t = &e->run.trace;
+    enum { LOOKED_AT = 32 };
+    const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
+    const size_t stride = (last - first) / LOOKED_AT + 1;
+    for (size_t r = first; r <= last; r += stride) {
+        if (t->rows[r].contact != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void draw_contact(const explorer_model *model, const explorer_view *view, screen *s,
+                  area line, const trace *t, double until, ink shade)
+{
+    double from, to;
+    view_window(model, view, &from, &to);
     for (int i = 0; i < line.width; i++) {
-        const double time = from + (to - from) * (i + 0.5) / line.width;
-        if (time <= e->seen && t->rows[trace_row_at(t, time)].contact != 0) {
-            screen_put(s, line.x + i, line.y, GLYPH_SHADE, INK_FORCE);
-        } else {
-            screen_put(s, line.x + i, line.y, GLYPH_LINE, INK_FRAME);
+        const double begin = from + (to - from) * i / line.width;
+        const double end = fmin(begin + (to - from) / line.width, until);
+        if (begin <= until && touches_between(t, begin, end)) {
+            screen_put(s, line.x + i, line.y, GLYPH_SHADE, shade);
+        }
+    }
+
+    // a touch that is shorter than a row is long
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= until; i++) {
+        if (t->events[i].kind == EVENT_CONTACT) {
+            const int x = time_column(model, view, line, t->events[i].time);
+            screen_put(s, x, line.y, GLYPH_SHADE, shade);
         }
     }
 }
@@ -419,30 +441,74 @@ static void draw_event(screen *s, int x, int y, event_kind kind, bool seen)
     }
 }
 
-// When the arm touches or lets go, in words on the line of the axis where nothing else
-// is: of a touch before its mark, of a release behind it.
-static void draw_event_instant(screen *s, area line, int x, const event *v)
+// Words on the line of the axis, before or behind a mark at column x, where nothing else
+// is; false where that has no room.
+static bool draw_label(screen *s, area line, int x, bool before, const char *text)
 {
-    char text[32];
-    const bool touches = v->kind == EVENT_IMPACT || v->kind == EVENT_CONTACT;
-    if (!touches && v->kind != EVENT_RELEASE) {
-        return;
-    }
-    snprintf(text, sizeof text, "%s %.4g", touches ? "hit" : "off", v->time);
-    const int length = (int)strlen(text);
-    const int start = touches ? x - length : x + 1;
-    if (start < line.x || start + length > line.x + line.width) {
-        return;
+    const int length = text_cells(text), start = before ? x - length : x + 1;
+    if (x < line.x - 1 || start < line.x || start + length > line.x + line.width) {
+        return false;
     }
 
     // over the line and its ticks only
     for (int i = 0; i < length; i++) {
         const uint32_t glyph = s->cells[(long)line.y * s->width + start + i].glyph;
         if (glyph != GLYPH_LINE && glyph != GLYPH_TICK_DOWN) {
-            return;
+            return false;
         }
     }
     screen_text(s, start, line.y, length, INK_EVENT, text);
+    return true;
+}
+
+// Where a time axis of one row begins and ends, on its line.
+static void draw_ends_of_line(screen *s, area line, double from, double to)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.4g", from);
+    draw_label(s, line, line.x - 1, false, text);
+    snprintf(text, sizeof text, "%.4g s", to);
+    draw_label(s, line, line.x + line.width, true, text);
+}
+
+// When the arm touches, before its mark, and lets go, behind it, as far as that was seen.
+static void label_touches(const explorer_model *model, const explorer_view *view,
+                          screen *s, area line)
+{
+    const session *e = &model->session;
+    const trace *t = &e->run.trace;
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
+        const event *v = &t->events[i];
+        const bool touches = v->kind == EVENT_IMPACT || v->kind == EVENT_CONTACT;
+        if (touches || v->kind == EVENT_RELEASE) {
+            char text[32];
+            snprintf(text, sizeof text, "%s %.4g", touches ? "hit" : "off", v->time);
+            draw_label(s, line, time_column(model, view, line, v->time), touches, text);
+        }
+    }
+}
+
+// What was changed, behind its mark or before it: a parameter goes without its group.
+static void label_changes(const explorer_model *model, const explorer_view *view,
+                          screen *s, area line)
+{
+    const scenario *scripted = &model->session.effective;
+    for (int i = 0; i < scripted->action_count; i++) {
+        const action *c = &scripted->actions[i];
+        char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH], text[LINE_TEXT];
+        if (c->kind == ACTION_PUSH) {
+            snprintf(text, sizeof text, "push %g", c->value);
+        } else {
+            const char *name = strchr(action_path(c, path), '.') + 1;
+            action_format_value(c, value, sizeof value);
+            snprintf(text, sizeof text, "%s %s", name, value);
+        }
+
+        const int x = time_column(model, view, line, c->time);
+        if (!draw_label(s, line, x, false, text)) {
+            draw_label(s, line, x, true, text);
+        }
+    }
 }
 
 area draw_time_axis(const explorer_model *model, const explorer_view *view, screen *s,
@@ -453,16 +519,15 @@ area draw_time_axis(const explorer_model *model, const explorer_view *view, scre
     const area below = area_right(a, LABEL_WIDTH + 1), line = area_row(below, 0);
     double from, to;
     view_window(model, view, &from, &to);
-    draw_contact_bar(e, s, line, from, to);
 
-    // a touch that is shorter than a column
-    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
-        if (t->events[i].kind == EVENT_CONTACT) {
-            const int x = time_column(model, view, line, t->events[i].time);
-            screen_put(s, x, a.y, GLYPH_SHADE, INK_FORCE);
-        }
+    // contact on the line, seconds in the row below it
+    for (int x = line.x; x < line.x + line.width; x++) {
+        screen_put(s, x, line.y, GLYPH_LINE, INK_FRAME);
     }
-    draw_instants(s, line, from, to);
+    draw_contact(model, view, s, line, t, e->seen, INK_FORCE);
+    if (a.height > 1) {
+        draw_instants(s, line, from, to);
+    }
 
     // events and notes
     for (size_t i = 0; i < t->event_count; i++) {
@@ -474,17 +539,18 @@ area draw_time_axis(const explorer_model *model, const explorer_view *view, scre
         const int x = time_column(model, view, line, model->notes[i].time);
         screen_put(s, x, a.y, '!', INK_TITLE);
     }
+    label_touches(model, view, s, line);
+    label_changes(model, view, s, line);
 
-    // the instants of touches and releases beside their marks
-    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
-        const int x = time_column(model, view, line, t->events[i].time);
-        if (x >= 0) {
-            draw_event_instant(s, line, x, &t->events[i]);
-        }
+    // seconds on the line itself, where there is but one row
+    if (a.height == 1) {
+        draw_ends_of_line(s, line, from, to);
     }
 
     // the meaning of the marks, next to them
     screen_text(s, a.x, a.y, LABEL_WIDTH, INK_FORCE, "\u2592 contact");
-    screen_text(s, a.x, a.y + 1, LABEL_WIDTH, INK_EVENT, "\u25b2 impact");
-    return (area){line.x, a.y, line.width, 2};
+    if (a.height > 1) {
+        screen_text(s, a.x, a.y + 1, LABEL_WIDTH, INK_EVENT, "\u25b2 impact");
+    }
+    return (area){line.x, a.y, line.width, a.height};
 }

@@ -1,9 +1,10 @@
-// The line of predictors: what each says would come of a touch now, and what then came.
+// The words of predictors: what each says would come of a touch now, and what then came.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
 
 #include "src/base/text_stream.h"
+
 #include "src/run/run.h"
 
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
@@ -97,30 +98,36 @@ static prediction largest_force_after(const session *s, size_t free)
     return largest;
 }
 
-// Adds a prediction behind its label to a line, with its delay where the screen is wide.
-static void write_prediction(char *text, size_t size, const char *label,
-                             const prediction *p, bool wide)
+enum { ROWS = 4, WIDE = 40 }; // of the panel; width from which on there is more [cells]
+
+// Draws a prediction into the first row of an area, with its delay where that has room;
+// returns what is below.
+static area draw_prediction(screen *s, area a, const char *label, const prediction *p)
 {
-    const char *joint = text[0] != '\0' ? ", " : "";
-    text_add(text, size, "%s%s %.*f N", joint, label, wide ? 3 : 2, p->force);
-    if (wide && isfinite(p->delay)) {
-        text_add(text, size, " in %.0f ms", 1e3 * p->delay);
+    char delay[24] = "";
+    int decimals = 2;
+    if (a.width >= WIDE) {
+        decimals = 3;
+        if (isfinite(p->delay)) {
+            snprintf(delay, sizeof delay, " in %.0f ms", 1e3 * p->delay);
+        }
     }
+    area_print(s, a, INK_TEXT, "%s %.*f N%s", label, decimals, p->force, delay);
+    return area_below(a, 1);
 }
 
 // What the predictors say of the state in a row: the forces of those that know one, else
 // why there is none.
-static void write_answers(const explorer_model *model, const explorer_view *view,
-                          layout *lay, size_t r, bool wide, char *text, size_t size)
+static void draw_answers(const explorer_model *model, const explorer_view *view,
+                         layout *lay, screen *s, area a, size_t r)
 {
     static const predictor asked[] = {PREDICTOR_ENERGY, PREDICTOR_IMPACT_DYNAMICS,
                                       PREDICTOR_LINEARISED};
-    const char *reason = "-";
+    const char *reason = "no predictor knows it";
     bool any = false;
 
     // the first two are the thesis's, of two links
-    const int links =
-        session_parameters_at(&model->session, model->session.now).arm.links;
+    const int links = model_parameters(model).arm.links;
     for (size_t i = links == 2 ? 0 : 2; i < sizeof asked / sizeof asked[0]; i++) {
         const prediction_answer answer =
             predictor_answer_at(model, view, lay, asked[i], r);
@@ -133,21 +140,21 @@ static void write_answers(const explorer_model *model, const explorer_view *view
             continue;
         }
         any = true;
-        write_prediction(text, size, answer.short_label, &answer.prediction, wide);
+        a = draw_prediction(s, a, answer.short_label, &answer.prediction);
     }
     if (!any) {
-        text_add(text, size, "%s%s", text[0] != '\0' ? ", " : "", reason);
+        area_text(s, a, INK_DIM, reason);
     }
 }
 
-// A row of a screen that has some to spare.
+// A few rows where the knobs have some to spare.
 static int predictors_rows(const explorer_model *model, const explorer_view *view,
                            screen_size body)
 {
     (void)model;
     (void)view;
     enum { LEAST = 12 };
-    return body.width >= SIDE_WIDTH && body.height >= LEAST ? 1 : 0;
+    return body.height >= LEAST ? ROWS : 0;
 }
 
 // What a touch now would bring, or in contact what the one there was has brought, and
@@ -155,21 +162,17 @@ static int predictors_rows(const explorer_model *model, const explorer_view *vie
 static void draw_predictors(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area a)
 {
-    enum { WIDE = 110 };
     const session *e = &model->session;
-    const bool touches = session_sample(e)->contact != 0, wide = a.width >= WIDE;
     const size_t r = free_row(e);
-    char text[LINE_TEXT] = "";
-    if (touches) {
+    area line = {a.x + 2, a.y, a.width - 3, 1};
+    if (session_sample(e)->contact != 0) {
         const prediction largest = largest_force_after(e, r);
-        write_prediction(text, sizeof text, "came", &largest, wide);
+        line = draw_prediction(s, line, "touched, came", &largest);
+    } else {
+        area_text(s, line, INK_DIM, "touching now would bring");
+        line = area_below(line, 1);
     }
-    write_answers(model, view, lay, r, wide, text, sizeof text);
-
-    const area line = {a.x + 1, a.y, a.width - 2, 1};
-    const int used =
-        area_text(s, line, INK_DIM, touches ? "touched: " : "touching now: ");
-    area_words(s, area_right(line, used), INK_TEXT, text);
+    draw_answers(model, view, lay, s, line, r);
 }
 
 const panel predictors_panel = {.name = "predictors",

@@ -142,8 +142,6 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "a pane of its amplitudes in the visible part")                                    \
     X("", "statistics", act_statistics(view), "X", "",                                   \
       "min, max, mean, rms, integral from mark to cursor")                               \
-    X("", "lanes", act_lanes(view, input, argument), "T", "auto|all|off",                \
-      "contact, modes, changes... below the curves; alone: next")                        \
     X("Scenarios", "open", act_open(model, view, input, argument), "o ]:+1 [:-1",        \
       "[NAME|+1|-1]", "another scenario, from a list")                                   \
     X("", "find", act_find(model, view, argument), "", "[TEXT]",                         \
@@ -178,8 +176,6 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "pictures where the terminal has them")                                            \
     X("", "rate", act_rate(view, input, argument), "", "KB|off",                         \
       "most that pictures may take, in kB a second: 200 over ssh")                       \
-    X("", "closeup", act_closeup(view, input, argument), "", "auto|on|off",              \
-      "the contact from near by; alone: next")                                           \
     X("", "bending", act_bending(view, input, argument), "", "[FACTOR]",                 \
       "drawn that many times as large; alone: as it is")                                 \
     X("", "mouse", act_mouse(view, input, argument), "", "on|off",                       \

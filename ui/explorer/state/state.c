@@ -303,6 +303,9 @@ int model_levels(const explorer_model *model, const pane *p,
         }
         const char *name = strchr(parameter_table[parameter].path, '.') + 1;
         const double value = parameter_get(&now, parameter);
+        if (value == 0 && parameter != PARAMETER_INDEX(wall.angle)) {
+            continue; // no limit
+        }
         levels[count++] = (shown_level){name, value, p->signals[0]};
         if (kinds[i].both_ways) {
             levels[count++] = (shown_level){name, -value, p->signals[0]};

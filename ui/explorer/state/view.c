@@ -36,21 +36,14 @@ bool filter_passes(const char *filter, const char *text)
 
 #define LOOK(command, field) command, offsetof(looks, field)
 const look_choice look_choices[] = {
-    {LOOK("theme", theme), false, {"dark", "light", "mono"}, {NULL}},
-    {LOOK("glyphs", glyphs), false, {"braille", "blocks", "ascii"}, {NULL}},
+    {LOOK("theme", theme), {"dark", "light", "mono"}, {NULL}},
+    {LOOK("glyphs", glyphs), {"braille", "blocks", "ascii"}, {NULL}},
     {LOOK("pixels", pixels),
-     false,
      {"off", "auto"},
      {"characters only", "pictures where the terminal says that it draws them"}},
-    {LOOK("closeup", close_up),
-     true,
-     {"auto", "on", "off"},
-     {"the contact from near by: %s"}},
     {LOOK("mouse", mouse),
-     false,
      {"off", "on"},
      {"the mouse is off: the terminal selects", "clicks move the cursor"}},
-    {LOOK("lanes", lanes), true, {"auto", "all", "off"}, {"lanes: %s"}},
     {NULL},
 };
 

@@ -17,7 +17,6 @@ typedef enum panel_place {
     PLACE_MAIN,  // below that
     PLACE_SIDE,  // on the right; Tab selects one of these
     PLACE_STACK, // below the selected one, as many as have room
-    PLACE_FOOT,  // a line below all these
     PLACE_PAGE,  // opens over the others
     PLACE_PROMPT // above the prompt while that is open
 } panel_place;
@@ -34,7 +33,7 @@ typedef enum panel_place {
     X(PANEL_STATISTICS, PLACE_SIDE, statistics_panel)                                    \
     X(PANEL_SWEEP, PLACE_SIDE, sweep_panel)                                              \
     X(PANEL_CONTROLLER, PLACE_STACK, controller_panel)                                   \
-    X(PANEL_PREDICTORS, PLACE_FOOT, predictors_panel)                                    \
+    X(PANEL_PREDICTORS, PLACE_STACK, predictors_panel)                                   \
     X(PANEL_HELP, PLACE_PAGE, help_panel)                                                \
     X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                      \
     X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)                                    \
@@ -73,28 +72,12 @@ bool filter_passes(const char *filter, const char *text);
 // --- looks -----------------------------------------------------------------------------
 // And the words for them in commands and settings.
 
-// Which lanes are shown below the curves.
-typedef enum lane_choice {
-    LANES_AUTO, // as many as there is room for
-    LANES_ALL,
-    LANES_OFF
-} lane_choice;
-
-// Whether a close-up of the contact is shown.
-typedef enum close_up_choice {
-    CLOSE_UP_AUTO, // if the terminal has pixels
-    CLOSE_UP_ON,
-    CLOSE_UP_OFF
-} close_up_choice;
-
 // Choices are values of their enumerations.
 typedef struct looks {
     int glyphs;     // glyph_set
     int theme;      // colour_theme
     int depth;      // colour_depth of the terminal; DEPTH_UNKNOWN without one
-    int lanes;      // lane_choice
     int pixels;     // not 0: pictures are drawn if the terminal has them
-    int close_up;   // close_up_choice
     double rate;    // most that pictures may take [kB/s], 0: no limit
     double bending; // factor by which bending is enlarged
     int mouse;      // not 0: mouse reports are on
@@ -105,8 +88,7 @@ typedef struct looks {
 enum { LOOK_WORDS = 5 };
 typedef struct look_choice {
     const char *command;
-    size_t place;    // of the choice in struct looks
-    bool goes_round; // without a word it goes on to the next one
+    size_t place; // of the choice in struct looks
     const char *words[LOOK_WORDS +
                       1]; // of the values of its enumeration, in their order; then NULL
     const char *says[LOOK_WORDS]; // when one is chosen, or the first for any word (%s),
