@@ -258,7 +258,7 @@ TEST(test_everything_that_is_listed_can_be_filtered)
     // Enter continues with the selection
     press_prompts(&ex, "<Enter>", "set motor.stiction 0.045");
     press_shows(&ex, "<Esc><Esc>", "stiction", "!parameters /");
-    press_shows(&ex, "<Tab>/loss<Enter>", "friction_loss", "!hub_acceleration");
+    press_shows(&ex, "<Tab><Tab>/loss<Enter>", "friction_loss", "!hub_acceleration");
     press_shows(&ex, "<Esc>", "hub_acceleration");
     press_shows(&ex, "?/scenario<Enter>", ":open", "!:zoom");
     press(&ex, "<Esc><Esc>");
@@ -384,7 +384,7 @@ TEST(test_ticks_are_even_and_names_whole)
     KEPT_TEXT(text) = picture(&ex, 80, 24, GLYPHS_BRAILLE);
     assert_false(strstr(text, "1.2\u2524") && strstr(text, "0.8\u2524") &&
                  !strstr(text, "0.4\u2524"));
-    press_shows(&ex, "<Tab>", "first_acceleration", "\u25c6 contact point");
+    press_shows(&ex, "<Tab><Tab>", "first_acceleration", "\u25c6 contact point");
 
     // keys reach the last value
     assert_shows_at(&ex, 120, 30, "!energy_residual");

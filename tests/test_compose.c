@@ -123,6 +123,8 @@ TEST(test_a_narrow_screen_reaches_the_side)
     press(&ex, "<Tab>");
     assert_shows_at(&ex, 60, 20, "knobs (/ all");
     press(&ex, "<Tab>");
+    assert_shows_at(&ex, 60, 20, "parameters (Tab");
+    press(&ex, "<Tab>");
     assert_shows_at(&ex, 60, 20, "hub_angle");
     press(&ex, "<Tab>");
     assert_shows_at(&ex, 60, 20, "statistics");

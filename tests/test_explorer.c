@@ -38,7 +38,7 @@ TEST(test_lines_of_dots_stay_within_their_canvas)
 TEST(test_every_glyph_has_a_twin_in_ascii)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    for (EACH_TEXT(one, "<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab>m")) {
+    for (EACH_TEXT(one, "<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab><Tab>m")) {
         press(&ex, *one);
         KEPT_TEXT(text) = picture(&ex, 150, 50, GLYPHS_ASCII);
         for (const char *c = text; *c; c++) {
@@ -117,7 +117,7 @@ TEST(test_a_spike_of_one_row_is_drawn)
 TEST(test_values_show_the_difference_to_the_mark)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press_shows(&ex, ":seek 0.2<Enter>m<Tab>:seek 0.25<Enter>", "values, minus mark",
+    press_shows(&ex, ":seek 0.2<Enter>m<Tab><Tab>:seek 0.25<Enter>", "values, minus mark",
                 "from mark 0.05 s");
     press_shows(&ex, "<Esc>", "!from mark");
 }
@@ -358,7 +358,7 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
 TEST(test_both_sides_of_an_impact_are_told_apart)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":seek 0.5<Enter>b:set motor.voltage 2<Enter>:panes 1<Enter>I<Tab>");
+    press(&ex, ":seek 0.5<Enter>b:set motor.voltage 2<Enter>:panes 1<Enter>I<Tab><Tab>");
     const sample before = *session_sample(&ex.model.session);
     press_shows(&ex, "<Right>",
                 formatted("force %.4g ", session_sample(&ex.model.session)->force));

@@ -228,6 +228,45 @@ TEST(data_follow_the_touch_of_a_changed_run)
     check_close(data->rows[0].time, 0.25, 1e-12);
 }
 
+// What a sensor read lies under the force of a run without sensors, touching when that
+// does; that their commands differed is said, and not where they are the same.
+TEST(readings_lie_under_the_force)
+{
+    const char *path = "readings.csv";
+    OPEN_EXPLORER(recorded, "compare/hybrid");
+    write_recording(&recorded, path, 0);
+    press_text(&recorded, ":data %s<Enter>", path);
+    assert_null(strstr(recorded.input.message.text, "another"));
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press_text(&ex, ":data %s<Enter>", path);
+    assert_non_null(strstr(ex.input.message.text, "command was another than the run's"));
+    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+
+    shown_run runs[SHOWN_RUNS];
+    const pane *force = &ex.view.panes.pane[0];
+    const int count = model_runs(&ex.model, force, runs);
+    assert_int_equal(runs[count - 1].kind, SHOWN_MEASURED);
+    assert_int_equal(shown_signal(&runs[count - 1], force, 0),
+                     SIGNAL_INDEX(force_reading));
+    assert_int_equal(shown_signal(&runs[0], force, 0), SIGNAL_INDEX(force));
+    const trace *data = &ex.model.measured;
+    double largest = 0, touch = (double)NAN;
+    for (size_t r = 0; r < data->row_count; r++) {
+        largest = fmax(largest, data->rows[r].force_reading);
+    }
+    for (size_t r = data->row_count; r-- > 0;) {
+        if (data->rows[r].force_reading > largest / 10) {
+            touch = data->rows[r].time;
+        }
+    }
+    const trace *t = &ex.model.session.run.trace;
+    size_t first = 0;
+    while (t->rows[first].force <= largest / 10) {
+        first++;
+    }
+    check_close(touch, t->rows[first].time, 1e-9);
+}
+
 TEST(data_without_a_command_say_what_is_missing_and_what_for)
 {
     const char *path = "no_command.csv";

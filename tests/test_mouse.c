@@ -137,7 +137,7 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
         point(&ex, POINTER_WHEEL_UP, page.area.x + 5, page.area.y + 5);
     }
     assert_int_equal(ex.view.drawn.scroll[PANEL_HELP], 0);
-    press(&ex, "<Esc><Tab>");
+    press(&ex, "<Esc><Tab><Tab>");
     hit_area values = part_on_screen(&ex, PANEL_VALUES, PART_BODY);
     assert_shows(&ex, "!calculated_for");
     for (int i = 0; i < 20; i++) {

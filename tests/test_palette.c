@@ -1,13 +1,13 @@
 // The palette: every entry is found by words, and does what it shows.
 #include "tests/explorer_on_screen.h"
 
+#include <glib.h>
+
 TEST(test_words_find_things_of_every_kind)
 {
     static palette_entry entries[PALETTE_ENTRIES];
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<C-p>");
-    const scenario_menu *menu = &ex.view.scenarios;
-    const key_bindings *keys = &ex.view.keys;
     static const struct {
         const char *words, *first;
         palette_kind kind;
@@ -17,20 +17,58 @@ TEST(test_words_find_things_of_every_kind)
                  {"energy_residual", "energy_residual", PALETTE_SIGNAL},
                  {"fig-3-4", "thesis/fig-3-4", PALETTE_SCENARIO}};
     for (EACH(c, cases)) {
-        assert_true(palette_find(menu, keys, c->words, entries) > 0);
-        const palette_text text = palette_describe(menu, keys, entries[0]);
+        assert_true(palette_find(&ex.model, &ex.view, c->words, entries) > 0);
+        const palette_text text = palette_describe(&ex.model, &ex.view, entries[0]);
         assert_string_equal(text.name, c->first);
         assert_int_equal(entries[0].kind, c->kind);
     }
 
     // words that stand only in what is said of a thing, in any order; and none
-    assert_true(palette_find(menu, keys, "frict COULOMB", entries) > 0);
-    assert_int_equal(palette_find(menu, keys, "no such thing at all", entries), 0);
+    assert_true(palette_find(&ex.model, &ex.view, "frict COULOMB", entries) > 0);
+    assert_int_equal(palette_find(&ex.model, &ex.view, "no such thing at all", entries),
+                     0);
 
-    // all of it without words, each once
-    const int all = palette_find(menu, keys, "", entries);
+    // all of it without words, each once: with the pin, the events and the help's topics
+    press(&ex, "<Esc><End>b<C-p>");
+    int topics = 0;
+    for (int i = 0; i < explorer_command_count; i++) {
+        topics += explorer_command_table[i].group[0] != '\0';
+    }
+    const int all = palette_find(&ex.model, &ex.view, "", entries);
     assert_int_equal(all, explorer_command_count + parameter_count + signal_count +
-                              summary_count + menu->count);
+                              summary_count + ex.view.scenarios.count + 1 +
+                              (int)ex.model.session.run.trace.event_count + topics);
+}
+
+// Runs, events, files and topics of the help are found and do what they are for.
+TEST_IN_FOLDER(runs_events_files_and_topics_are_found)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":save bench.csv<Enter><End>");
+    press(&ex, ":pin weak wall<Enter>:set motor.voltage 2<Enter><C-p>weak wall<Enter>");
+    check_close(value_of(&ex, PARAMETER_INDEX(motor.voltage)), 1, 0);
+    press(&ex, "<End><C-p>release<Enter>");
+    const event *there = session_event(&ex.model.session);
+    assert_non_null(there);
+    press_shows(&ex, "<C-p>Lessons<Enter>", "keys and commands /Lessons", ":answer",
+                "!:branch");
+
+    // a file lies under the run, and its command is played, by three keys besides its
+    // name; a path from elsewhere is taken as it is typed
+    press(&ex, "<Esc><Esc><C-p>bench.csv<Enter>");
+    assert_true(ex.model.measured.row_count > 0);
+    press(&ex, ":data off<Enter>:open compare/hybrid<Enter>:save law.csv<Enter>"
+               ":open corrected/first-impact<Enter>");
+    g_autofree char *path = g_canonicalize_filename("law.csv", NULL);
+    press_text(&ex, "<C-p>%s<Down><Enter>", path);
+    assert_int_equal(ex.model.session.effective.parameters.control.law, LAW_PLAYBACK);
+
+    // one undo takes all of that back, one redo puts it in again
+    press(&ex, "u");
+    assert_int_equal(ex.model.session.effective.parameters.control.law, LAW_NONE);
+    assert_string_equal(ex.model.session.effective.parameters.control.playback_file, "");
+    press(&ex, "U");
+    assert_int_equal(ex.model.session.effective.parameters.control.law, LAW_PLAYBACK);
 }
 
 // Words of other programs find what is meant: in the palette, in the help and as the
@@ -49,12 +87,10 @@ TEST(test_other_words_find_what_is_meant)
                  {"undo", "undo"},
                  {"fft", "spectrum"}};
     for (EACH(c, cases)) {
-        const int count =
-            palette_find(&ex.view.scenarios, &ex.view.keys, c->word, entries);
+        const int count = palette_find(&ex.model, &ex.view, c->word, entries);
         bool found = false;
         for (int i = 0; i < count && i < 12; i++) {
-            const palette_text text =
-                palette_describe(&ex.view.scenarios, &ex.view.keys, entries[i]);
+            const palette_text text = palette_describe(&ex.model, &ex.view, entries[i]);
             found = found || strcmp(text.name, c->meant) == 0;
         }
         fail_if(!found, "'%s' does not find %s", c->word, c->meant);

@@ -240,7 +240,7 @@ mux send-keys "export TERM=xterm-256color" Enter
 start
 mux send-keys Space Home
 await "t 0.00000 s"
-mux send-keys -l $'\033[<0;45;33M\033[<0;45;33m'
+mux send-keys -l $'\033[<0;45;35M\033[<0;45;35m'
 await "t 0.53906 s"
 # what is pasted presses no keys: neither quits nor opens anything, and in the prompt it is text
 mux set-buffer $'q\nqy:quit\n'
@@ -281,11 +281,11 @@ check_given_back "suspended with a mouse"
 start
 mux send-keys Space Home
 await "t 0.00000 s"
-mux send-keys -l $'\033[<0;45;33M'
-mux send-keys -l $'\033[<32;60;33M'
-mux send-keys -l $'\033[<0;60;33m'
+mux send-keys -l $'\033[<0;45;35M'
+mux send-keys -l $'\033[<32;60;35M'
+mux send-keys -l $'\033[<0;60;35m'
 await "t 0.77"
-mux send-keys -l $'\033[<64;60;33M'
+mux send-keys -l $'\033[<64;60;35M'
 await "0.8 s"
 mux send-keys -l $'\033[1;2D'
 await "f follows the cursor again"

@@ -60,8 +60,8 @@ static void enter_prompt(explorer *ex)
     bool needs_argument = false;
     const int at = view->palette.selected;
     if (palette_shows(p) && at >= 0 &&
-        at < palette_find(&view->scenarios, &view->keys, p->text, entries)) {
-        palette_line(&view->scenarios, &view->keys, entries[at], line, &needs_argument);
+        at < palette_find(&ex->model, view, p->text, entries)) {
+        palette_line(&ex->model, view, entries[at], line, &needs_argument);
     }
     p->open = false;
     act_clear_message(&ex->input);
@@ -85,17 +85,18 @@ static bool leaves(int key)
 }
 
 // Whether a key moved in the palette that the prompt shows: Up leaves it at its top.
-static bool key_in_palette(explorer_view *view, const explorer_input *input, int key)
+static bool key_in_palette(const explorer_model *model, explorer_view *view,
+                           const explorer_input *input, int key)
 {
     if (!palette_shows(&input->prompt) || input->prompt.recalled > 0) {
         return false;
     }
     if (key == KEY_CODE_DOWN || key == ('n' & 0x1f)) {
-        act_move_in_palette(view, input, 1);
+        act_move_in_palette(model, view, input, 1);
         return true;
     }
     if ((key == KEY_CODE_UP || key == ('p' & 0x1f)) && view->palette.selected >= 0) {
-        act_move_in_palette(view, input, -1);
+        act_move_in_palette(model, view, input, -1);
         return true;
     }
     return false;
@@ -118,7 +119,7 @@ static void key_in_prompt(explorer *ex, int key)
 
     // only Tab after Tab goes through what fits; words are not completed
     p->cycling = p->cycling && key == KEY_CODE_TAB;
-    if (key_in_palette(&ex->view, &ex->input, key) ||
+    if (key_in_palette(&ex->model, &ex->view, &ex->input, key) ||
         (p->searches && key == KEY_CODE_TAB)) {
         return;
     }
@@ -141,6 +142,7 @@ static void key_in_prompt(explorer *ex, int key)
         type_in_prompt(ex, key);
         if (p->searches) {
             ex->view.palette.selected = 0;
+            palette_take_path(&ex->view.files, p->text);
         } else {
             ex->view.palette.selected = -1;
         }

@@ -6,6 +6,7 @@
 #include "src/base/fault.h"
 #include "src/base/numbers.h"
 #include "ui/explorer/state/command_list.h"
+#include "ui/explorer/state/palette.h"
 #include "ui/explorer/state/state.h"
 
 // --- the commands ----------------------------------------------------------------------
@@ -126,7 +127,7 @@ bool act_rate(explorer_view *view, explorer_input *input, const char *argument);
 bool act_bending(explorer_view *view, explorer_input *input, const char *argument);
 bool act_mouse(explorer_view *view, explorer_input *input, const char *argument);
 bool act_redraw(explorer_view *view);
-bool act_help(explorer_view *view);
+bool act_help(explorer_view *view, const char *argument);
 bool act_quit_now(explorer_input *input);
 
 // scenarios and lessons (scenario_actions.c)
@@ -331,7 +332,8 @@ void act_follow_lesson(explorer_model *model);
 
 // Moves the selection up (-1) or down (1) within the list. Without words to search for it
 // may also move above the first entry.
-void act_move_in_palette(explorer_view *view, const explorer_input *input, int direction);
+void act_move_in_palette(const explorer_model *model, explorer_view *view,
+                         const explorer_input *input, int direction);
 
 // --- axes of values --------------------------------------------------------------------
 

@@ -36,6 +36,33 @@ static status read_measured(explorer_model *model, const char *path, fault *f)
     return STATUS_OK;
 }
 
+// Whether the recording had another command than the run, on average by more than a
+// fiftieth of the largest, where both are known.
+static bool commands_differ(const explorer_model *model)
+{
+    enum { LOOKED_AT = 200, SHARE = 50 };
+    const session *s = &model->session;
+    const trace *data = &model->measured, *run = &s->run.trace;
+    const int command = SIGNAL_INDEX(command);
+    const bool has_law = trace_has(run, command);
+    double sum = 0, largest = 0;
+    int count = 0;
+    for (size_t r = 0; r < data->row_count; r += data->row_count / LOOKED_AT + 1) {
+        const sample *row = &data->rows[r];
+        if (!isfinite(row->command) || row->time < 0 || row->time > session_end(s)) {
+            continue;
+        }
+        double own = session_parameters_at(s, row->time).motor.voltage;
+        if (has_law) {
+            own = run->rows[trace_row_at(run, row->time)].command;
+        }
+        sum += fabs(row->command - own);
+        largest = fmax(largest, fmax(fabs(own), fabs(row->command)));
+        count++;
+    }
+    return count > 0 && sum > largest * count / SHARE;
+}
+
 // Lets the run play the command of the measured data, on their clock: from the start, as
 // changes of its own.
 static status play_measured(explorer_model *model, fault *f)
@@ -47,12 +74,21 @@ static status play_measured(explorer_model *model, fault *f)
                          PARAMETER_INDEX(control.playback_shift),
                          PARAMETER_INDEX(control.law)};
     const double shift = 0 - model->measured.rows[0].time;
+    FAULT_IF(!trace_has(&model->measured, SIGNAL_INDEX(command)), f, STATUS_BAD_ARGUMENT,
+             "the recording has no column 'command' that a run could play");
+    const unsigned gesture = session_new_gesture(s);
+    const int before = s->input_count;
     TRY(parameter_set_text(&p, plays[0], model->measured_file, f));
     TRY(parameter_set_text(&p, plays[1], "command", f));
     TRY(parameter_set_number(&p, plays[2], shift, f));
     TRY(parameter_set_number(&p, plays[3], LAW_PLAYBACK, f));
     for (size_t i = 0; i < sizeof plays / sizeof plays[0]; i++) {
         TRY(session_change_from_start(s, &p, plays[i], f));
+    }
+
+    // one undo takes them all back
+    for (int i = before; i < s->input_count; i++) {
+        s->inputs[i].gesture = gesture;
     }
     model_lay_data(model, shift);
     return STATUS_OK;
@@ -124,12 +160,19 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
                act_tell(input, "%zu rows, whose command the run plays on their clock",
                         rows);
     }
-    if (model_lay_data(model, shift)) {
-        return act_tell(input, "%zu rows, shifted by %.6g s; :data off takes them away",
+    if (!model_lay_data(model, shift)) {
+        return act_warn(input,
+                        "%zu rows, as they are: no force in both that shows a touch",
+                        rows);
+    }
+    if (commands_differ(model)) {
+        return act_tell(input,
+                        "%zu rows, shifted by %.6g s; their command was another than the "
+                        "run's: 'play' behind the file lets it play theirs",
                         rows, model->measured_shift);
     }
-    return act_warn(input, "%zu rows, as they are: no force in both that shows a touch",
-                    rows);
+    return act_tell(input, "%zu rows, shifted by %.6g s; :data off takes them away", rows,
+                    model->measured_shift);
 }
 
 // --- identification --------------------------------------------------------------------

@@ -187,7 +187,15 @@ static bool is_passed_over(const explorer_model *model, const explorer_view *vie
 
 bool act_side(const explorer_model *model, explorer_view *view)
 {
-    bool narrow = view->size.width > 0 && view->size.width < SIDE_WIDTH;
+    const bool narrow = view->size.width > 0 && view->size.width < SIDE_WIDTH;
+
+    // behind the knobs come all parameters
+    const bool seen = !narrow || view->side.in_front;
+    if (seen && view->side.panel == PANEL_PARAMETERS && !view->parameters.all) {
+        view->parameters.all = true;
+        return true;
+    }
+    view->parameters.all = false;
 
     // the panels of the side, then those that are folded for want of room
     panel_id next = view->side.panel;
@@ -237,9 +245,11 @@ static bool toggle_page(explorer_view *view, panel_id page)
     return true;
 }
 
-bool act_help(explorer_view *view)
+bool act_help(explorer_view *view, const char *argument)
 {
-    return toggle_page(view, PANEL_HELP);
+    toggle_page(view, PANEL_HELP);
+    snprintf(view->filters.text[PANEL_HELP], LINE_TEXT, "%s", argument);
+    return true;
 }
 
 bool act_info(explorer_view *view)
@@ -452,18 +462,20 @@ bool act_quit_now(explorer_input *input)
 bool act_palette(explorer_view *view, explorer_input *input, const char *argument)
 {
     scenario_menu_read_titles(&view->scenarios);
+    palette_read_files(&view->files);
+    palette_take_path(&view->files, argument);
     prompt_open(&input->prompt, NULL, "%s", argument);
     input->prompt.searches = true;
     view->palette = (palette_view){0};
     return act_clear_message(input);
 }
 
-void act_move_in_palette(explorer_view *view, const explorer_input *input, int direction)
+void act_move_in_palette(const explorer_model *model, explorer_view *view,
+                         const explorer_input *input, int direction)
 {
     assert(direction == 1 || direction == -1);
     static palette_entry entries[PALETTE_ENTRIES];
-    const int count =
-        palette_find(&view->scenarios, &view->keys, input->prompt.text, entries);
+    const int count = palette_find(model, view, input->prompt.text, entries);
     const int least = input->prompt.searches ? 0 : -1;
     int at = view->palette.selected + direction;
     if (at >= count) {

@@ -600,6 +600,6 @@ void compose_screen(const explorer_model *model, const explorer_view *view,
     draw_status(model, view, s, s->height - 1);
     if (palette_shows(&input->prompt)) {
         const area above = {0, 1, s->width, s->height - 2 - rows};
-        draw_palette(view, &input->prompt, lay, s, above);
+        draw_palette(model, view, &input->prompt, lay, s, above);
     }
 }

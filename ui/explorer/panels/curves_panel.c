@@ -370,7 +370,7 @@ static void draw_run_curves(const explorer_model *model, const explorer_view *vi
         if (is_hidden(p, k)) {
             continue;
         }
-        const int signal = p->signals[k];
+        const int signal = shown_signal(run, p, k);
         const double *pairs = extremes_pairs(&model->extremes[number], run, signal);
         set_look(model, &f, p, run, &look, k);
         draw_curve(model, f, run->trace, signal, pairs, is_present);

@@ -7,10 +7,10 @@ enum { MOST_ENTRIES = 12, MOST_WIDTH = 110 };
 enum { WIDE = 70, KIND = 10, NAME = 30, KEYS = 16, NARROW_NAME = 26 };
 
 // An entry in a line: kind, name, keys and meaning, or only name and meaning.
-static void draw_palette_entry(const explorer_view *view, screen *s, area line,
-                               palette_entry entry)
+static void draw_palette_entry(const explorer_model *model, const explorer_view *view,
+                               screen *s, area line, palette_entry entry)
 {
-    const palette_text text = palette_describe(&view->scenarios, &view->keys, entry);
+    const palette_text text = palette_describe(model, view, entry);
     const bool wide = line.width >= WIDE;
     const int name_width = wide ? NAME : NARROW_NAME;
     if (wide) {
@@ -29,8 +29,9 @@ static void draw_palette_entry(const explorer_view *view, screen *s, area line,
 }
 
 // The lines of the palette, among which the selected one always is.
-static void draw_palette_lines(const explorer_view *view, layout *lay, screen *s,
-                               area lines, const palette_entry *entries, int count)
+static void draw_palette_lines(const explorer_model *model, const explorer_view *view,
+                               layout *lay, screen *s, area lines,
+                               const palette_entry *entries, int count)
 {
     const int rows = lines.height;
     int selected = view->palette.selected, first = 0;
@@ -43,7 +44,7 @@ static void draw_palette_lines(const explorer_view *view, layout *lay, screen *s
     layout_add_hit(lay, (hit_area){PANEL_PALETTE, PART_LINES, first, lines});
     for (int i = 0; i < rows; i++) {
         const area row = area_row(lines, i);
-        draw_palette_entry(view, s, (area){row.x + 1, row.y, row.width - 2, 1},
+        draw_palette_entry(model, view, s, (area){row.x + 1, row.y, row.width - 2, 1},
                            entries[first + i]);
         if (first + i == selected) {
             area_tint(s, row, INK_SELECTED);
@@ -51,11 +52,11 @@ static void draw_palette_lines(const explorer_view *view, layout *lay, screen *s
     }
 }
 
-void draw_palette(const explorer_view *view, const prompt *p, layout *lay, screen *s,
-                  area a)
+void draw_palette(const explorer_model *model, const explorer_view *view, const prompt *p,
+                  layout *lay, screen *s, area a)
 {
     static palette_entry entries[PALETTE_ENTRIES];
-    const int count = palette_find(&view->scenarios, &view->keys, p->text, entries);
+    const int count = palette_find(model, view, p->text, entries);
 
     // while only a first word is typed a list without entries would be in the way
     int rows = count;
@@ -84,21 +85,20 @@ void draw_palette(const explorer_view *view, const prompt *p, layout *lay, scree
     // the lines lie over it, so a click meets them first
     const area lines = {frame.x + 1, frame.y + 1, width - 2, rows};
     layout_add_hit(lay, (hit_area){PANEL_PALETTE, PART_BODY, 0, frame});
-    draw_palette_lines(view, lay, s, lines, entries, count);
+    draw_palette_lines(model, view, lay, s, lines, entries, count);
 }
 
 // A click takes an entry, the wheel moves the selection.
 static bool point_at_palette(explorer_model *model, explorer_view *view,
                              explorer_input *input, const panel_gesture *g)
 {
-    (void)model;
     const int wheel = pointer_wheel(g->event);
     if (g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES) {
         view->palette = (palette_view){gesture_line(g), true};
         return true;
     }
     if (wheel != 0) {
-        act_move_in_palette(view, input, wheel);
+        act_move_in_palette(model, view, input, wheel);
     }
     return wheel != 0;
 }

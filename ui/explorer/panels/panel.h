@@ -264,8 +264,8 @@ bool list_press_key(const page_list *list, explorer_model *model, explorer_view 
 
 // Draws it into the rows above the prompt, at the bottom of the area. It is the one panel
 // that sees the prompt, so it has no `draw`.
-void draw_palette(const explorer_view *view, const prompt *p, layout *lay, screen *s,
-                  area a);
+void draw_palette(const explorer_model *model, const explorer_view *view, const prompt *p,
+                  layout *lay, screen *s, area a);
 
 // --- the arm ---------------------------------------------------------------------------
 

@@ -214,16 +214,21 @@ int help_write(const key_bindings *b, int width, help_line *lines, int most)
 
 // --- help ------------------------------------------------------------------------------
 
-// Keeps the lines that pass a filter; returns how many.
+// Keeps the lines that pass a filter, below a heading that does all; returns how many.
 static int keep_matching(help_line *lines, int count, const char *filter)
 {
     int kept = 0;
+    bool in_group = false;
     for (int i = 0; i < count; i++) {
+        if (lines[i].heading || lines[i].text[0] == '\0') {
+            in_group = lines[i].heading && filter_passes(filter, lines[i].text);
+        }
+
         // other words for a command find it, too
         char all[2 * LINE_TEXT];
         const char *also = lines[i].also != NULL ? lines[i].also : "";
         snprintf(all, sizeof all, "%.255s %.255s", lines[i].text, also);
-        if (lines[i].text[0] != '\0' && filter_passes(filter, all)) {
+        if (in_group || (lines[i].text[0] != '\0' && filter_passes(filter, all))) {
             lines[kept++] = lines[i];
         }
     }

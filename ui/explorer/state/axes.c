@@ -193,7 +193,7 @@ static value_range range_in_run(const pane *p, const extremes *e, const shown_ru
     const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
     value_range found = value_range_empty;
     for (int k = 0; k < p->count; k++) {
-        const int signal = p->signals[k];
+        const int signal = shown_signal(run, p, k);
         if (!signal_counts(p, k, run)) {
             continue;
         }
@@ -276,7 +276,8 @@ void state_update_axes(explorer_model *model, explorer_view *view)
         for (int i = 0; i < PANES; i++) {
             const pane *p = &view->panes.pane[i];
             for (int k = 0; p->shown && k < p->count; k++) {
-                update_extremes(&model->extremes[run], &runs[run], p->signals[k]);
+                update_extremes(&model->extremes[run], &runs[run],
+                                shown_signal(&runs[run], p, k));
             }
         }
     }

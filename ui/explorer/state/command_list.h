@@ -109,7 +109,8 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
     X("", "note", act_note(model, view, input, argument), "", "[TEXT]",                  \
       "a note at the cursor, without a text none; @TIME TEXT elsewhere")                 \
     X("", "notes", act_notes(view), "", "", "all notes: Enter goes there")               \
-    X("", "side", act_side(model, view), "Tab", "", "parameters or values on the right") \
+    X("", "side", act_side(model, view), "Tab", "",                                      \
+      "all parameters, values, statistics")                                              \
     X("", "filter", act_filter(model, view, argument), "/", "[WORDS]",                   \
       "of parameters, values or help: those with all words")                             \
     X("", "info", act_info(view), "d", "", "what the scenario is about")                 \
@@ -191,7 +192,8 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
     X("", "redraw", act_redraw(view), "C-l", "", "draw the whole screen anew")           \
     X("", "wait", act_wait(model, view, input, argument), "", "SECONDS",                 \
       "in a script: let time pass")                                                      \
-    X("", "help", act_help(view), "?", "", "this page")                                  \
+    X("", "help", act_help(view, argument), "?", "[WORDS]",                              \
+      "this page, or what of it has all words")                                          \
     X("", "interrupt", act_interrupt(model, view, input), "C-c", "",                     \
       "stop what is being computed, else leave")                                         \
     X("", "quit", act_quit(model, view, input), "q", "",                                 \

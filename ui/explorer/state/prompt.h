@@ -48,53 +48,12 @@ void prompt_use_history(prompt *p, const char *path);
 bool text_type(char *text, int key);
 
 // --- the palette -----------------------------------------------------------------------
-// The palette: one searchable list of commands with their keys, parameters, signals,
-// scenarios and lessons.
 
-enum { PALETTE_ENTRIES = 1024 };
-
-typedef enum palette_kind {
-    PALETTE_COMMAND,
-    PALETTE_PARAMETER,
-    PALETTE_SIGNAL,
-    PALETTE_QUANTITY,
-    PALETTE_SCENARIO,
-    PALETTE_LESSON,
-    PALETTE_KINDS
-} palette_kind;
-
-typedef struct palette_entry {
-    palette_kind kind;
-    int index; // index in the table or list of its kind
-    int rank;  // how well it matches; 0 is best
-} palette_entry;
-
-// Which entry of those shown is selected.
+// Which entry of the palette is selected.
 typedef struct palette_view {
     int selected; // -1: none, and Enter executes the line as typed
     bool picked;  // the selected entry was chosen with the mouse
 } palette_view;
-
-// What an entry is ("command", "parameter", ...), its name and description.
-typedef struct palette_text {
-    const char *kind, *name, *about;
-    char keys[32]; // keys of a command, "" for none
-} palette_text;
-
-// The entries whose names or descriptions contain all the words, best matches first;
-// returns how many. Without words all entries.
-int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
-                 palette_entry entries[PALETTE_ENTRIES]);
-
-palette_text palette_describe(const scenario_menu *menu, const key_bindings *keys,
-                              palette_entry entry);
-
-// The command line of an entry; whether it still needs an argument.
-void palette_line(const scenario_menu *menu, const key_bindings *keys,
-                  palette_entry entry, char line[LINE_TEXT], bool *needs_argument);
-
-// Other words by which people look for a command or a quantity, "" for none.
-const char *synonyms_of(const char *name);
 
 // Whether an open prompt shows the palette: it searches, or its first word is being
 // typed.

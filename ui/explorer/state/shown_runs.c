@@ -108,6 +108,22 @@ int model_runs(const explorer_model *model, const pane *p, shown_run runs[SHOWN_
     return count;
 }
 
+int shown_signal(const shown_run *run, const pane *p, int k)
+{
+    const int reading = SIGNAL_INDEX(force_reading);
+    const bool of_force = p->signals[k] == SIGNAL_INDEX(force) && p->view == VIEW_TIME;
+    if (run->kind != SHOWN_MEASURED || !of_force ||
+        trace_has(run->trace, p->signals[k])) {
+        return p->signals[k];
+    }
+    for (int i = 0; i < p->count; i++) {
+        if (p->signals[i] == reading) {
+            return p->signals[k]; // it has a curve of its own
+        }
+    }
+    return reading;
+}
+
 int model_run_count(const explorer_model *model)
 {
     shown_run runs[SHOWN_RUNS];

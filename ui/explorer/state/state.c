@@ -316,18 +316,23 @@ int model_levels(const explorer_model *model, const pane *p,
 
 // --- up to date ------------------------------------------------------------------------
 
-// The force by which two traces are aligned, -1 if none is in both.
-static int common_force(const trace *a, const trace *b)
+// The forces by which measured data are aligned to a run: the same in both, else what
+// the data have with the run's own. False if there are none.
+static bool common_forces(const trace *data, const trace *run, int *of_data, int *of_run)
 {
     static const int forces[] = {SIGNAL_INDEX(piezo_force), SIGNAL_INDEX(force_reading),
                                  SIGNAL_INDEX(force)};
-    int found = -1;
+    bool same = false;
+    *of_data = -1;
     for (size_t i = 0; i < sizeof forces / sizeof forces[0]; i++) {
-        if (trace_has(a, forces[i]) && trace_has(b, forces[i])) {
-            found = forces[i];
+        const bool both = trace_has(run, forces[i]);
+        if (trace_has(data, forces[i]) && (both || !same)) {
+            *of_data = forces[i];
+            same = both;
         }
     }
-    return found;
+    *of_run = same ? *of_data : SIGNAL_INDEX(force);
+    return *of_data >= 0 && trace_has(run, *of_run);
 }
 
 // The first instant at which a signal is above a level [s], NaN if it never is.
@@ -344,16 +349,17 @@ static double first_above(const trace *t, int signal, double level)
 bool model_lay_data(explorer_model *model, double shift)
 {
     const trace *run = &model->session.run.trace, *data = &model->measured;
-    const int force = common_force(data, run);
+    int force, of_run;
+    const bool has_forces = common_forces(data, run, &force, &of_run);
     model->measured_aligned = isnan(shift);
     model->measured_run = model_run_id(model);
 
     // a tenth of the measured largest force marks the touch in both
-    if (isnan(shift) && force >= 0) {
+    if (isnan(shift) && has_forces) {
         const double first = data->rows[0].time,
                      last = data->rows[data->row_count - 1].time;
         const double level = trace_statistics(data, force, first, last).maximum / 10;
-        shift = model->measured_shift + first_above(run, force, level) -
+        shift = model->measured_shift + first_above(run, of_run, level) -
                 first_above(data, force, level);
     }
     if (!isfinite(shift)) {

@@ -144,6 +144,7 @@ typedef struct explorer_view {
     panel_id page; // over the panels, PANEL_NONE if there is none
     scenario_menu scenarios;
     palette_view palette;
+    file_list files;
     int change; // the selected change, index in session.inputs
     int note;   // the selected note
     drawn_view drawn;
@@ -205,6 +206,9 @@ bool model_subtracts(const explorer_model *model);
 // are for comparison.
 int model_runs(const explorer_model *model, const pane *p, shown_run runs[SHOWN_RUNS]);
 int model_run_count(const explorer_model *model);
+// What a run shows as the k-th signal of a pane: that, but of measured data without a
+// force what a sensor read in its place.
+int shown_signal(const shown_run *run, const pane *p, int k);
 shown_run model_run(const explorer_model *model, int index);
 // The row of a run or a difference at the cursor, on the side of an event where that
 // stands.

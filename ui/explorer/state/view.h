@@ -69,6 +69,17 @@ typedef struct filters {
 // the case of letters. Every text passes an empty filter.
 bool filter_passes(const char *filter, const char *text);
 
+// --- files -----------------------------------------------------------------------------
+// Files of the working folder that the lab can open, and the one whose path is typed.
+
+enum { FILES_LISTED = 128, FILE_NAME = 128 };
+
+typedef struct file_list {
+    char names[FILES_LISTED][FILE_NAME];
+    int count;
+    char typed[LINE_TEXT]; // "" for none
+} file_list;
+
 // --- looks -----------------------------------------------------------------------------
 // And the words for them in commands and settings.
 
