@@ -16,36 +16,28 @@
 #include "tests/law_informed.h"
 
 // The case without one of its errors.
-static law_case without(const law_case *c, int error)
+static drawn_case without(const drawn_case *c, int kind)
 {
-    law_case less = *c;
-    less.count = 0;
-    for (int i = 0; i < c->count; i++) {
-        if (c->of[i] != error) {
-            memcpy(less.settings[less.count], c->settings[i], sizeof c->settings[i]);
-            less.of[less.count++] = c->of[i];
+    drawn_case less = *c;
+    less.setting_count = 0;
+    for (int i = 0; i < c->setting_count; i++) {
+        if (c->of[i] != kind) {
+            const int to = less.setting_count++;
+            memcpy(less.settings[to], c->settings[i], sizeof c->settings[i]);
+            less.of[to] = c->of[i];
         }
     }
-    if (errors[error].draw == push) {
+    if (strcmp(law_error_name(kind), "push") == 0) {
         less.push = 0;
     }
     return less;
-}
-
-static bool has(const law_case *c, int error)
-{
-    bool there = errors[error].draw == push && c->push != 0;
-    for (int i = 0; i < c->count; i++) {
-        there = there || c->of[i] == error;
-    }
-    return there;
 }
 
 typedef struct tally {
     const char *law;
     int out, lost, slow, high, wrong, late; // runs out of bounds, and by which of them
     int found;                    // of which the law that sees all is within them
-    int by[ERRORS], several;      // an error without which the run is within; none is
+    int by[LAW_ERRORS], several;  // an error without which the run is within; none is
     bool surveys;                 // what knowledge is worth, too:
     int one[KNOWLEDGE][COMMANDS]; // cases in which that law is with one tuning for all
 } tally;
@@ -71,9 +63,9 @@ static void print_tally(const tally *t)
         printf("with one tuning it is in %d, %d, %d cases at 0.5, 1, 3 N: %s\n",
                t->one[i][0], t->one[i][1], t->one[i][2], knowledge_names[i]);
     }
-    for (int e = 0; e < ERRORS; e++) {
+    for (int e = 0; e < LAW_ERRORS; e++) {
         if (t->by[e] > 0) {
-            printf("%4d within the bounds without: %s\n", t->by[e], errors[e].name);
+            printf("%4d within the bounds without: %s\n", t->by[e], law_error_name(e));
         }
     }
     printf("%4d out of them whichever one error is missing\n", t->several);
@@ -81,24 +73,22 @@ static void print_tally(const tally *t)
 
 // Prints which error of a run brings it within the bounds when it is missing, and counts
 // it.
-static void print_causes(tally *t, const law_case *c, double command)
+static void print_causes(tally *t, const drawn_case *c, double command)
 {
     bool alone = false;
-    for (int e = 0; e < ERRORS; e++) {
-        if (!has(c, e)) {
-            continue;
-        }
-        const law_case less = without(c, e);
+    for (int i = 0; i < c->error_count; i++) {
+        const int kind = c->errors[i];
+        const drawn_case less = without(c, kind);
         const double open_loop = run_case(&less, "open-loop", NULL, 1).first_contact_s;
         const bool cause = judge(&less, t->law, command, open_loop).within;
-        t->by[e > 0 && errors[e].draw == errors[e - 1].draw ? e - 1 : e] += cause;
+        t->by[kind] += cause;
         alone = alone || cause;
-        printf(" %s%s", errors[e].name, cause ? " (cause)," : ",");
+        printf(" %s%s", law_error_name(kind), cause ? " (cause)," : ",");
     }
     t->several += !alone;
 }
 
-static void explain_case(void *to, int number, const law_case *c, int command,
+static void explain_case(void *to, int number, const drawn_case *c, int command,
                          double open_loop, const verdict *v)
 {
     tally *t = to;

@@ -1,8 +1,10 @@
-// A control law on cases that nobody chose: two or three errors at once, drawn from the
-// ranges below, none of which the law is told unless the case says so. Prints every case
-// that is out of bounds and how many are within them.
+// A control law on cases that nobody chose (src/study/robust/law_errors.h): two or three
+// errors at once, none of which the law is told unless the case says so. Prints every
+// case that is out of bounds and how many are within them.
 //
 //     law_cases [SEED [COUNT [LAW [LEAST...]]]]
+//
+// COUNT cases of the seeds SEED, SEED + 1 ...
 //
 // Each case is run with commands of 0.5, 1 and 3 N. Within the bounds: 30 % overshoot of
 // the mean over 5 ms, settled in 0.3 s, in 0.6 s where contact is lost, from first
@@ -17,7 +19,7 @@ typedef struct tally {
     int within[COMMANDS], beyond[COMMANDS];
 } tally;
 
-static void count_case(void *to, int number, const law_case *c, int command,
+static void count_case(void *to, int number, const drawn_case *c, int command,
                        double open_loop, const verdict *v)
 {
     (void)open_loop;
@@ -31,7 +33,7 @@ static void count_case(void *to, int number, const law_case *c, int command,
            "late %.2f:",
            v->beyond ? "BEYOND" : "out   ", number, commands[command], v->over,
            v->settling, v->error, v->lost, v->late);
-    for (int j = 0; j < c->count; j++) {
+    for (int j = 0; j < c->setting_count; j++) {
         printf(" %s", c->settings[j]);
     }
     printf(c->push != 0 ? " push=%.3g@%.3g\n" : "\n", c->push, c->push_time);

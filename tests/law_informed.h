@@ -96,11 +96,12 @@ static informed_arm informed_arm_of(const parameters *p, double force)
     m.state = 2 * n + 1;
     modes_matrices(&m.arm, m.mass, m.stiffness);
     m.damping[0] = m.arm.motor.damping;
-    for (int k = 0; k < n; k++) {
-        m.reach[k] = arm_link_of(&m.arm, k).length;
+    const int first = m.arm.first; // of the links among the bodies
+    for (int k = first; k < n; k++) {
+        m.reach[k] = arm_link_of(&m.arm, k - first).length;
     }
     for (int k = 1; k < n; k++) {
-        const double d = arm_link_of(&m.arm, k).damping;
+        const double d = arm_link_of(&m.arm, k - first).damping;
         m.damping[(k - 1) * (n + 1)] += d;
         m.damping[k * (n + 1)] += d;
         m.damping[(k - 1) * n + k] -= d;
@@ -298,13 +299,13 @@ static double informed_command(const informed_arm *m, const informed_plan *plan,
 }
 
 // Runs a case under the law and keeps its commands. False where the run fails.
-static bool informed_run(const law_case *c, double command, const informed_arm *m,
+static bool informed_run(const drawn_case *c, double command, const informed_arm *m,
                          const informed_plan *plan, informed_commands *out)
 {
     scenario s;
     fault f = {.code = STATUS_OK};
     run_loop *loop;
-    law_case calm = *c;
+    drawn_case calm = *c;
     calm.push = 0; // it comes from outside
     case_scenario(&s, NULL, &calm, "open-loop", command);
     if (loop_create(&loop, &s, &(loop_options){.commanded = true}, &f) != STATUS_OK) {
@@ -364,12 +365,12 @@ static const controller informed_law = {.interface = CONTROLLER_INTERFACE,
 
 // The verdict on the law with a tuning: of a run of its own under the commands that it
 // gave.
-static verdict informed_verdict(const law_case *c, double command, double open_loop,
+static verdict informed_verdict(const drawn_case *c, double command, double open_loop,
                                 const informed_arm *m, const informed_tuning *t)
 {
     static informed_plan plan;
     static informed_commands quiet, given;
-    law_case calm = *c;
+    drawn_case calm = *c;
     calm.push = 0;
     informed_design(m, t, &plan);
     if (!informed_run(&calm, command, m, &plan, &quiet) ||
@@ -384,7 +385,7 @@ static verdict informed_verdict(const law_case *c, double command, double open_l
 }
 
 // With one tuning for all cases.
-static verdict informed_once(const law_case *c, double command, double open_loop,
+static verdict informed_once(const drawn_case *c, double command, double open_loop,
                              int knowledge)
 {
     scenario s;
@@ -397,7 +398,7 @@ static verdict informed_once(const law_case *c, double command, double open_loop
 }
 
 // Tries tunings until the law is within the bounds; else the last verdict.
-static verdict informed_search(const law_case *c, double command, double open_loop)
+static verdict informed_search(const drawn_case *c, double command, double open_loop)
 {
     static const double speeds[] = {0, 0.02, 0.05, 0.01}, weights[] = {1e-3, 1e-2, 1e-4};
     static const double touches[] = {1.2, 1.35, 0.9}, rises[] = {0.03, 0.06},

@@ -12,6 +12,7 @@
 // A case that is being drawn.
 typedef struct draft {
     drawn_case *made;
+    int kind; // of error that is being drawn, -1: none
     const parameters *around;
     random_generator chance;
     double rate;          // of samples [Hz]
@@ -42,6 +43,7 @@ static __attribute__((format(printf, 2, 3))) char *add(draft *d, const char *for
 {
     drawn_case *c = d->made;
     assert(c->setting_count < DRAWN_CASE_SETTINGS);
+    c->of[c->setting_count] = d->kind;
     char *setting = c->settings[c->setting_count++];
     va_list list;
     va_start(list, format);
@@ -372,6 +374,7 @@ drawn_case drawn_case_of(const scenario *around, uint64_t seed)
 {
     drawn_case c = {.setting_count = 0};
     draft d = {.made = &c,
+               .kind = -1,
                .around = &around->parameters,
                .rate = around->parameters.control.rate};
     random_seed(&d.chance, seed);
@@ -394,9 +397,11 @@ drawn_case drawn_case_of(const scenario *around, uint64_t seed)
             continue;
         }
         changed |= subject;
+        d.kind = kind;
         kinds[kind].draw(&d);
         c.errors[c.error_count++] = kind;
     }
+    d.kind = -1;
 
     keep_jitter_within_period(&d);
 

@@ -14,6 +14,7 @@ enum { DRAWN_CASE_SETTINGS = 48, DRAWN_SETTING_LENGTH = 64 };
 // A case: what differs from the scenario.
 typedef struct drawn_case {
     char settings[DRAWN_CASE_SETTINGS][DRAWN_SETTING_LENGTH]; // "PATH=VALUE"
+    int of[DRAWN_CASE_SETTINGS]; // kind of error that each belongs to, -1: none
     int setting_count;
     int errors[LAW_ERRORS_A_CASE]; // their kinds
     int error_count;
