@@ -1,6 +1,6 @@
-// The modes of the thesis's hybrid impact and force controller, 5.2 to 5.4, for it and
-// for the laws that share them: another approach (speed-limit, bang-bang), another answer
-// to the impact (reverse-torque), and the controller that 5.4 calls ideal (recovering).
+// The thesis's hybrid impact and force controller, 5.2 to 5.4, and its variants, in a
+// table at the end: another approach (speed-limit, bang-bang), another answer to the
+// impact (reverse-torque), and the controller that 5.4 calls ideal (recovering).
 //
 // In contact the arm has one degree of freedom, theta, with the wall at theta_imp
 // (docs/explanation/control-design.md):
@@ -52,9 +52,8 @@ enum {
 #define HYBRID_PARAMETERS                                                                \
     {.name = "force"}, {.name = "approach_voltage"}, {.name = "kp"}, {.name = "kv"},     \
         {.name = "gains"}, {.name = "coefficients"}, {.name = "transition_time"},        \
-        {.name = "contact_threshold"},                                                   \
     {                                                                                    \
-        .name = "impact_angle"                                                           \
+        .name = "contact_threshold"                                                      \
     }
 
 typedef struct hybrid_memory {
@@ -77,39 +76,20 @@ typedef struct hybrid_memory {
     int readings_without_contact;
 } hybrid_memory;
 
-// A controller of this family: word, modes, table of parameters, start and sample
-// function.
-#define HYBRID_LAW(law, names, table, starts, samples)                                   \
-    CONTROLLER_LAW(law, names, table, hybrid_memory, .lockable = true, .start = starts,  \
-                   .sample = samples, .tune = starts)
-
-static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
-
-// Takes setup and parameters into a hybrid_memory, at the start or later; never refuses.
-// If t_f changes in the impact mode, the trajectory is planned again, from where the arm
-// is and for the time left.
-static const char *hybrid_start(void *memory, const controller_setup *setup)
+// Takes setup and `count` parameters, at the start or later. If t_f changes in the impact
+// mode, the trajectory is planned again, from where the arm is and for the time left.
+static void hybrid_tell(hybrid_memory *m, const controller_setup *setup, size_t count)
 {
-    hybrid_memory *m = memory;
     const double *p = setup->parameters;
 
     m->replans = m->mode == IMPACT && m->p[TRANSITION] != p[TRANSITION];
     set_point_tell(&m->wanted, p[FORCE_WANTED], setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
-    memcpy(m->p, p, OWN * sizeof p[0]);
+    memcpy(m->p, p, count * sizeof p[0]);
     m->printed = p[COEFFICIENTS] != 0;
     if (m->readings == 0) {
         m->impact_angle = setup->wall_angle;
     }
-    return NULL;
-}
-
-// hybrid_start for a law with a parameter of its own behind the shared ones.
-static const char *hybrid_start_with_own(void *memory, const controller_setup *setup)
-{
-    hybrid_memory *m = memory;
-    m->p[OWN] = setup->parameters[OWN];
-    return hybrid_start(memory, setup);
 }
 
 // Stiffness of the hub in contact: 6 k2 in (5.13) as printed, 4 k2 once the spring is
@@ -347,34 +327,6 @@ static void choose_mode(hybrid_memory *m, const controller_input *in, double imp
     }
 }
 
-// Chooses among the three modes and returns the command of the present one [V];
-// `approach` is that of the approach. Fills in all of `out` but the command.
-static double hybrid_command(hybrid_memory *m, const controller_input *in,
-                             controller_output *out, double approach)
-{
-    choose_mode(m, in, m->p[TRANSITION]);
-    if (m->replans && m->mode == IMPACT) {
-        replan(m, in);
-    }
-    if (m->mode == IMPACT) {
-        average_impact_angle(m, in);
-    }
-
-    out->mode = m->mode;
-    if (m->mode == APPROACH) {
-        out->calculated_force = 0;
-    } else {
-        out->calculated_force = hybrid_calculated_force(m, in);
-    }
-    if (m->mode == IMPACT) {
-        return impact_command(m, in, out);
-    }
-    if (m->mode == FORCE) {
-        return hybrid_force_command(m, in, out);
-    }
-    return approach;
-}
-
 // Command that keeps the hub at a speed [rad/s], friction included, with a proportional
 // correction [V].
 static double hybrid_speed_command(const hybrid_memory *m, const controller_input *in,
@@ -386,33 +338,25 @@ static double hybrid_speed_command(const hybrid_memory *m, const controller_inpu
     return torque / m->rig.torque_per_volt;
 }
 
-// --- hybrid ---
+// --- before contact --------------------------------------------------------------------
 
-// The thesis's hybrid impact and force controller, 5.2 to 5.4: approach, impact mode,
-// force mode.
-static const controller_parameter hybrid_parameters[] = {HYBRID_PARAMETERS};
+// What a variant does before contact, or between contact and the force mode [V].
+typedef double variant_command(hybrid_memory *m, const controller_input *in,
+                               controller_output *out);
 
-static void hybrid_sample(void *memory, const controller_input *in,
-                          controller_output *out)
+// The constant command.
+static double approach_plainly(hybrid_memory *m, const controller_input *in,
+                               controller_output *out)
 {
-    hybrid_memory *m = memory;
-    out->command = hybrid_command(m, in, out, m->p[APPROACH_VOLTAGE]);
+    (void)in, (void)out;
+    return m->p[APPROACH_VOLTAGE];
 }
 
-const controller hybrid_law =
-    HYBRID_LAW("hybrid", hybrid_modes, hybrid_parameters, hybrid_start, hybrid_sample);
-
-// --- recovering ---
-
-// The controller that 5.4 calls ideal: hybrid, but going back to position control where
-// contact is lost, and through the impact mode again when it returns.
-static const char *const recovering_modes[] = {"approach", "impact", "force", "recover",
-                                               NULL};
-
-static void recovering_sample(void *memory, const controller_input *in,
-                              controller_output *out)
+// The constant command; where contact is lost the hub goes back to position control, and
+// through the impact mode again when it returns.
+static double approach_again(hybrid_memory *m, const controller_input *in,
+                             controller_output *out)
 {
-    hybrid_memory *m = memory;
     const int lost = 2; // readings without contact in a row
     if (in->force > m->p[THRESHOLD]) {
         m->readings_without_contact = 0;
@@ -427,55 +371,12 @@ static void recovering_sample(void *memory, const controller_input *in,
     }
 
     // the hub returns slowly towards the angle at which the beam would press
-    double approach = m->p[APPROACH_VOLTAGE];
     if (m->mode == RECOVER) {
         const double left = pressing_angle(m, m->p[FORCE_WANTED]) - in->encoder;
-        approach = hybrid_speed_command(m, in, fmin(0.3, 5 * left));
+        return hybrid_speed_command(m, in, fmin(0.3, 5 * left));
     }
-    out->command = hybrid_command(m, in, out, approach);
+    return approach_plainly(m, in, out);
 }
-
-const controller recovering_law =
-    HYBRID_LAW("recovering", recovering_modes, hybrid_parameters, hybrid_start,
-               recovering_sample);
-
-// --- reverse-torque ---
-
-// The hybrid controller until contact; then the largest command away from the wall for
-// control.reverse_time; then the hybrid controller's force mode.
-static const controller_parameter reverse_torque_parameters[] = {HYBRID_PARAMETERS,
-                                                                 {.name =
-                                                                      "reverse_time"}};
-
-static void reverse_torque_sample(void *memory, const controller_input *in,
-                                  controller_output *out)
-{
-    hybrid_memory *m = memory;
-    choose_mode(m, in, m->p[OWN]); // contact begins the pull back, its time ends it
-    out->mode = m->mode;
-    if (m->mode == APPROACH) {
-        out->calculated_force = 0;
-    } else {
-        out->calculated_force = hybrid_calculated_force(m, in);
-    }
-    if (m->mode == APPROACH) {
-        out->command = m->p[APPROACH_VOLTAGE];
-    } else if (m->mode == IMPACT) {
-        out->command = -m->rig.voltage_limit;
-    } else {
-        out->command = hybrid_force_command(m, in, out);
-    }
-}
-
-const controller reverse_torque_law =
-    HYBRID_LAW("reverse-torque", hybrid_modes, reverse_torque_parameters,
-               hybrid_start_with_own, reverse_torque_sample);
-
-// --- speed-limit ---
-
-// The hybrid controller with the hub kept below control.speed_limit on the way to the
-// wall and, where there is a control.force_limit, to speeds at which the impact that the
-// rig predicts for a touch at this instant (predicted_force, (4.20)-(4.22)) keeps to it.
 
 // Command for each newton that the predicted force is off its limit [V/N]. The prediction
 // has the command in it, by the torque at the hub over the arm's length: less than half a
@@ -488,74 +389,127 @@ const controller reverse_torque_law =
 // Speed at which a resting hub is taken, for the sign of its friction [rad/s].
 #define CREEP 1e-3
 
-static const controller_parameter speed_limit_parameters[] = {HYBRID_PARAMETERS,
-                                                              {.name = "speed_limit"},
-                                                              {.name = "force_limit"}};
-
-static const char *speed_limit_start(void *memory, const controller_setup *setup)
+// The hub kept below control.speed_limit and, where there is a control.force_limit, to
+// speeds at which the impact that the rig predicts for a touch at this instant
+// (predicted_force, (4.20)-(4.22)) keeps to it.
+static double approach_within_limits(hybrid_memory *m, const controller_input *in,
+                                     controller_output *out)
 {
-    hybrid_memory *m = memory;
-    m->p[OWN_FORCE_LIMIT] = setup->parameters[OWN_FORCE_LIMIT];
-    return hybrid_start_with_own(memory, setup);
-}
-
-// The command that keeps up the present speed, plus one in proportion to the margin that
-// the predicted force leaves [V].
-static double force_limited_command(const hybrid_memory *m, const controller_input *in)
-{
-    const double left = SHARE * m->p[OWN_FORCE_LIMIT] - in->predicted_force;
-    return hybrid_speed_command(m, in, fmax(in->tachometer, CREEP)) +
-           VOLTS_PER_NEWTON * left;
-}
-
-static void speed_limit_sample(void *memory, const controller_input *in,
-                               controller_output *out)
-{
-    hybrid_memory *m = memory;
-    double limited = fmin(m->p[APPROACH_VOLTAGE], hybrid_speed_command(m, in, m->p[OWN]));
+    double limited =
+        fmin(approach_plainly(m, in, out), hybrid_speed_command(m, in, m->p[OWN]));
     if (m->p[OWN_FORCE_LIMIT] > 0 && isfinite(in->predicted_force)) {
-        limited = fmin(limited, force_limited_command(m, in));
+        // keeps up the present speed, plus a command in proportion to the margin left
+        const double left = SHARE * m->p[OWN_FORCE_LIMIT] - in->predicted_force;
+        limited = fmin(limited, hybrid_speed_command(m, in, fmax(in->tachometer, CREEP)) +
+                                    VOLTS_PER_NEWTON * left);
     }
-    out->command = hybrid_command(m, in, out, limited);
+    return limited;
 }
-
-const controller speed_limit_law =
-    HYBRID_LAW("speed-limit", hybrid_modes, speed_limit_parameters, speed_limit_start,
-               speed_limit_sample);
-
-// --- bang-bang ---
 
 // Full command to control.switch_share of the way, full command back until the hub rests,
-// then the plain approach and the hybrid controller.
-static const controller_parameter bang_bang_parameters[] = {HYBRID_PARAMETERS,
-                                                            {.name = "switch_share"}};
-
-static void bang_bang_sample(void *memory, const controller_input *in,
-                             controller_output *out)
+// then the constant one.
+static double approach_fast(hybrid_memory *m, const controller_input *in,
+                            controller_output *out)
 {
-    hybrid_memory *m = memory;
-    double limit = m->rig.voltage_limit, approach = limit;
-
     // the way is measured from where the run begins
     if (!m->started) {
         m->started = true;
         m->start_angle = in->encoder;
     }
-
-    // behind the switch the command brakes until the hub rests, then it is the plain
-    // approach
     double travelled = in->encoder - m->start_angle;
     double distance = m->rig.wall_angle - m->start_angle;
-    if (travelled >= m->p[OWN] * distance) {
-        m->reversed = m->reversed || in->tachometer <= 0;
-        approach = -limit;
-    }
+    const bool behind_switch = travelled >= m->p[OWN] * distance;
+    m->reversed = m->reversed || (behind_switch && in->tachometer <= 0);
     if (m->reversed) {
-        approach = m->p[APPROACH_VOLTAGE];
+        return approach_plainly(m, in, out);
     }
-    out->command = hybrid_command(m, in, out, approach);
+    if (behind_switch) {
+        return -m->rig.voltage_limit;
+    }
+    return m->rig.voltage_limit;
 }
 
-const controller bang_bang_law =
-    HYBRID_LAW("bang-bang", hybrid_modes, bang_bang_parameters, hybrid_start_with_own,
-               bang_bang_sample);
+// --- after it --------------------------------------------------------------------------
+
+// Along the quintic.
+static double follow_quintic(hybrid_memory *m, const controller_input *in,
+                             controller_output *out)
+{
+    if (m->replans) {
+        replan(m, in);
+    }
+    average_impact_angle(m, in);
+    return impact_command(m, in, out);
+}
+
+// The largest command away from the wall.
+static double pull_back(hybrid_memory *m, const controller_input *in,
+                        controller_output *out)
+{
+    (void)in, (void)out;
+    return -m->rig.voltage_limit;
+}
+
+// A sample: chooses the mode and gives its command. The impact mode lasts as long as
+// parameter `length` says.
+static void hybrid_act(hybrid_memory *m, const controller_input *in,
+                       controller_output *out, variant_command *before,
+                       variant_command *after, int length)
+{
+    const double approach = before(m, in, out);
+    choose_mode(m, in, m->p[length]);
+    out->mode = m->mode;
+    if (m->mode == IMPACT) {
+        out->command = after(m, in, out);
+    } else if (m->mode == FORCE) {
+        out->command = hybrid_force_command(m, in, out);
+    } else {
+        out->command = approach;
+    }
+    if (m->mode == APPROACH) {
+        out->calculated_force = 0;
+    } else {
+        out->calculated_force = hybrid_calculated_force(m, in);
+    }
+}
+
+// --- the variants ----------------------------------------------------------------------
+
+static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
+static const char *const recovering_modes[] = {"approach", "impact", "force", "recover",
+                                               NULL};
+
+// The controllers: name and word, modes, what they do before contact and after it, for
+// how long, and their parameters behind the shared ones.
+#define HYBRID_VARIANTS(VARIANT)                                                         \
+    VARIANT(hybrid, "hybrid", hybrid_modes, approach_plainly, follow_quintic,            \
+            TRANSITION, {.name = "impact_angle"})                                        \
+    VARIANT(recovering, "recovering", recovering_modes, approach_again, follow_quintic,  \
+            TRANSITION, {.name = "impact_angle"})                                        \
+    VARIANT(reverse_torque, "reverse-torque", hybrid_modes, approach_plainly, pull_back, \
+            OWN, {.name = "impact_angle"}, {.name = "reverse_time"})                     \
+    VARIANT(speed_limit, "speed-limit", hybrid_modes, approach_within_limits,            \
+            follow_quintic, TRANSITION, {.name = "impact_angle"},                        \
+            {.name = "speed_limit"}, {.name = "force_limit"})                            \
+    VARIANT(bang_bang, "bang-bang", hybrid_modes, approach_fast, follow_quintic,         \
+            TRANSITION, {.name = "impact_angle"}, {.name = "switch_share"})
+
+#define HYBRID_VARIANT(law, word, names, before, after, length, ...)                     \
+    static const controller_parameter law##_parameters[] = {HYBRID_PARAMETERS,           \
+                                                            __VA_ARGS__};                \
+    static const char *law##_start(void *memory, const controller_setup *setup)          \
+    {                                                                                    \
+        hybrid_tell(memory, setup,                                                       \
+                    sizeof law##_parameters / sizeof law##_parameters[0]);               \
+        return NULL;                                                                     \
+    }                                                                                    \
+    static void law##_sample(void *memory, const controller_input *in,                   \
+                             controller_output *out)                                     \
+    {                                                                                    \
+        hybrid_act(memory, in, out, before, after, length);                              \
+    }                                                                                    \
+    const controller law##_law =                                                         \
+        CONTROLLER_LAW(word, names, law##_parameters, hybrid_memory, .lockable = true,   \
+                       .start = law##_start, .sample = law##_sample,                     \
+                       .tune = law##_start);
+HYBRID_VARIANTS(HYBRID_VARIANT)
