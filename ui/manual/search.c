@@ -82,11 +82,12 @@ typedef struct question_words {
 static bool says_little(const char *word)
 {
     static const char little[] =
-        " a about add all also am an and any are as at be been between but by can "
-        "choose could did difference different do does doesn don for from get give "
+        " a about add again all also am an and any are as at be been between but by can "
+        "choose could did difference different do does doesn don explain for from get "
+        "give "
         "given go got had happen happens has have how i if in instead into is isn it "
         "its just know let like ll look make many may me mean might much must my "
-        "need no not of off on one only or other our out over own pick possible "
+        "need no not of off on one only or other our out over own pick please possible "
         "really s say see select should show so some something still such t take "
         "tell than that the their them then there these they thing this those to too "
         "under up us use used using ve want was way we were what when where whether "
@@ -138,12 +139,16 @@ static void insert_thing(sqlite3_str *script, int source, int item, int thing,
                             " + %d, %Q);",
                             thing, t, e->texts[t]);
     }
+    const char *title = e->title;
+    if (e->aside) {
+        title = "";
+    }
     sqlite3_str_appendf(
         script,
         "INSERT INTO thing SELECT %d, %d, %Q, %Q, group_concat(body, ' ') "
         "FROM passage WHERE rowid >= %d * " PASSAGES ";"
         "INSERT INTO title VALUES (%Q);",
-        source, item, e->title, e->above, thing, e->title);
+        source, item, title, e->above, thing, e->title);
 }
 
 // The tables of all entries in memory; NULL, and a loss is noted, without memory.

@@ -2,12 +2,15 @@
 // parameters, quantities, commands.
 #pragma once
 
+#include <stdbool.h>
+
 // Something that can be found. Texts last until the next one is asked for.
 typedef struct search_entry {
     const char *title;        // words in it count most
     const char *above;        // title of what it is part of, "" if of nothing
     const char *const *texts; // paragraphs
     int text_count;
+    bool aside; // for few readers: words in its title count as those in its texts
 } search_entry;
 
 // Things of one kind: how many there are, and what the i-th of them is.
