@@ -13,7 +13,7 @@ rooms="src/base src/tables src/arm src/thesis src/contact src/engines src/engine
     src/engines/stiff src/predict src/rig/controller src/rig/external
     src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/study/identify src/study/linear src/study/robust
     src/study/store src/exchange/fmu/fmi2 src/exchange/fmu src/exchange src/api/impactlab src/api
-    render/page render/plot render/scene render/figures
+    render/page render/plot render/scene render/figures render
     ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands
     ui/commands/studies ui/commands/exchange ui/web ui"
 

@@ -62,15 +62,6 @@ picture artwork_picture(const artwork *a, const figure_options *options)
                      .what = a};
 }
 
-void artwork_finish(artwork *a)
-{
-    if (a->release != NULL) {
-        a->release(a->owner);
-    }
-    g_free(a->alternative);
-    memset(a, 0, sizeof *a);
-}
-
 // ---- tables
 
 artwork artwork_of_table(table_page *t)
@@ -311,11 +302,6 @@ static char *latex_environment(const artwork *a, const char *tex, const char *fi
 
 // ---- what stands beside a picture
 
-char *artwork_beside(const char *file, const char *ending)
-{
-    return text_printf("%.*s%s", (int)(picture_ending(file) - file), file, ending);
-}
-
 static status write_text_file(const char *path, const char *text, fault *f)
 {
     whole_file file;
@@ -340,7 +326,7 @@ static bool holds_other_numbers(const char *csv)
 
 status artwork_publish_csv(const artwork *a, const char *path, fault *f)
 {
-    g_autofree char *csv = artwork_beside(path, ".csv");
+    g_autofree char *csv = picture_beside(path, ".csv");
     FAULT_IF(a->plotted != NULL && holds_other_numbers(csv), f, STATUS_CANNOT_WRITE,
              "'%s' holds other numbers and is kept, so that those of the picture are not "
              "written",
@@ -351,7 +337,7 @@ status artwork_publish_csv(const artwork *a, const char *path, fault *f)
 // Writes title and caption as plain text beside a picture.
 static status write_caption(const artwork *a, const char *path, fault *f)
 {
-    g_autofree char *file = artwork_beside(path, ".txt");
+    g_autofree char *file = picture_beside(path, ".txt");
     g_autofree char *caption = text_plain(text_or(a->caption, ""));
     const char *between = caption[0] != '\0' ? "\n\n" : "";
     g_autofree char *text =
@@ -359,19 +345,11 @@ static status write_caption(const artwork *a, const char *path, fault *f)
     return write_text_file(file, text, f);
 }
 
-char *latex_picture(const char *path)
-{
-    if (picture_format_of(path) == FORMAT_SVG) {
-        return artwork_beside(path, ".pdf");
-    }
-    return g_strdup(path);
-}
-
 // A PDF where the picture itself is an SVG.
 status artwork_publish_latex(const artwork *a, const figure_options *o, const char *path,
                              char **environment, fault *f)
 {
-    g_autofree char *read = latex_picture(path);
+    g_autofree char *read = picture_for_latex(path);
     if (strcmp(read, path) != 0) {
         const picture p = artwork_picture(a, o);
         TRY(picture_write(&p, read, f));

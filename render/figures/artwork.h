@@ -44,7 +44,14 @@ status artwork_write_csv(const artwork *a, const char *path, fault *f);
 // The picture of an artwork, valid as long as the artwork.
 picture artwork_picture(const artwork *a, const figure_options *options);
 
-void artwork_finish(artwork *a);
+static inline void artwork_finish(artwork *a)
+{
+    if (a->release != NULL) {
+        a->release(a->owner);
+    }
+    g_free(a->alternative);
+    *a = (artwork){0};
+}
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(artwork, artwork_finish)
 
 // An artwork of a plotted figure, which is borrowed; and of one that it owns from now on.
@@ -59,9 +66,6 @@ status make_folder(const char *folder, fault *f);
 
 // --- publications: the file, a file with its caption if the picture has none, and LaTeX
 // for both
-
-// The path of a picture with another ending, to be freed with g_free.
-char *artwork_beside(const char *file, const char *ending);
 
 // Writes a plotted figure according to the options: the picture at path, with a bare look
 // a .txt with its caption, the figure environment at o->latex, and with `with_csv` its
@@ -82,13 +86,9 @@ status artwork_publish_csv(const artwork *a, const char *path, fault *f);
 // Sets the ends of a figure's horizontal axis to --from and --to.
 void figure_take_range(figure *fig, const figure_options *o);
 
-// The picture that LaTeX reads for the one at a path: of an SVG, which its
-// \includegraphics cannot read, the PDF beside it. Free with g_free.
-char *latex_picture(const char *path);
-
-// Writes that PDF where the picture at the path is an SVG, and makes the text of a figure
-// environment for o->latex: the path of the picture relative to the folder of that file,
-// its width, alternative text, caption and the label fig:NAME with the name of the
+// Writes the PDF beside an SVG at the path (picture_for_latex), and makes the text of a
+// figure environment for o->latex: the path of the picture relative to the folder of that
+// file, its width, alternative text, caption and the label fig:NAME with the name of the
 // picture. Free *environment with g_free.
 status artwork_publish_latex(const artwork *a, const figure_options *o, const char *path,
                              char **environment, fault *f);

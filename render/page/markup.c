@@ -3,7 +3,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <pango/pango.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -215,19 +214,6 @@ char *text_printable(const char *bytes)
     return valid;
 }
 
-char *text_plain(const char *markup)
-{
-    g_autofree char *valid = text_printable(markup);
-    char *plain = NULL;
-    if (!pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
-        return g_steal_pointer(&valid);
-    }
-
-    // an entity may have become what the markup did not hold
-    make_printable(plain, '\n');
-    return plain;
-}
-
 char *text_escape(const char *bytes)
 {
     g_autofree char *valid = text_printable(bytes);
@@ -263,4 +249,45 @@ void text_append(GString *text, const char *format, ...)
     g_autofree char *printed = text_vprintf(format, list);
     va_end(list);
     g_string_append(text, printed);
+}
+
+// ---- what ends the program
+
+static void (*end_of_program)(const char *reason);
+
+static void on_log(const char *domain, GLogLevelFlags level, const char *reason,
+                   void *context)
+{
+    if ((level & G_LOG_LEVEL_ERROR) != 0) {
+        end_of_program(reason);
+    }
+    g_log_default_handler(domain, level, reason, context);
+}
+
+// Pango warns where it draws text as well as it can, without the font or letters
+// elsewhere: such a picture is none.
+static GLogWriterOutput on_warning(GLogLevelFlags level, const GLogField *fields,
+                                   gsize count, void *context)
+{
+    const char *domain = "", *reason = "";
+    for (gsize i = 0; i < count; i++) {
+        if (strcmp(fields[i].key, "GLIB_DOMAIN") == 0) {
+            domain = fields[i].value;
+        }
+        if (strcmp(fields[i].key, "MESSAGE") == 0) {
+            reason = fields[i].value;
+        }
+    }
+    if ((level & (G_LOG_LEVEL_CRITICAL | G_LOG_LEVEL_WARNING)) != 0 &&
+        strcmp(domain, "Pango") == 0) {
+        end_of_program(reason);
+    }
+    return g_log_writer_default(level, fields, count, context);
+}
+
+void text_when_giving_up(void (*end)(const char *reason))
+{
+    end_of_program = end;
+    g_log_set_default_handler(on_log, NULL);
+    g_log_set_writer_func(on_warning, NULL, NULL);
 }

@@ -7,14 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "src/base/fault.h"
-
-typedef enum picture_format {
-    FORMAT_NONE,
-    FORMAT_PNG,
-    FORMAT_PDF,
-    FORMAT_SVG
-} picture_format;
+#include "render/page/picture_path.h"
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(cairo_surface_t, cairo_surface_destroy)
 
@@ -43,16 +36,6 @@ void picture_line(cairo_t *cr, double x0, double y0, double x1, double y1);
 // STATUS_NO_MEMORY if cairo met an error, after which it draws nothing. Errors of writing
 // are found by the caller when closing the stream.
 status picture_end_drawing(cairo_t *cr, status code, fault *f);
-
-// The ending of a path's last part with its dot; without one its end.
-const char *picture_ending(const char *path);
-
-// The format that a path's extension (.png, .pdf, .svg) or a bare word (png) names.
-picture_format picture_format_of(const char *path);
-
-// Checks in advance whether picture_write can write to path: STATUS_BAD_ARGUMENT for an
-// unknown extension, STATUS_CANNOT_WRITE for a folder that does not exist.
-status picture_check_path(const char *path, fault *f);
 
 // Draws the picture into a file; the extension chooses the format. Returns the status of
 // paint, STATUS_BAD_ARGUMENT for an unknown extension or a resolution out of range,

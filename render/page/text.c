@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "render/page/page.h"
+#include "src/base/words.h"
 
 // Whether a font of the family is installed.
 static bool family_is_there(const char *family)
@@ -78,6 +79,19 @@ static void balance(PangoLayout *layout, double width)
         }
     }
     pango_layout_set_width(layout, (int)(wide * PANGO_SCALE));
+}
+
+char *text_plain(const char *markup)
+{
+    g_autofree char *valid = text_printable(markup);
+    char *plain = NULL;
+    if (!pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
+        return g_steal_pointer(&valid);
+    }
+
+    // an entity may have become what the markup did not hold
+    make_printable(plain, '\n');
+    return plain;
 }
 
 // Sets the font, then the words, then how lines are broken.
@@ -181,43 +195,4 @@ void report_add_text(figure_report *report, const char *markup, double size,
     if (!g_utf8_validate(t->text, -1, &end)) {
         t->text[end - t->text] = '\0';
     }
-}
-
-static void (*end_of_program)(const char *reason);
-
-static void on_log(const char *domain, GLogLevelFlags level, const char *reason,
-                   void *context)
-{
-    if ((level & G_LOG_LEVEL_ERROR) != 0) {
-        end_of_program(reason);
-    }
-    g_log_default_handler(domain, level, reason, context);
-}
-
-// Pango warns where it draws text as well as it can, without the font or letters
-// elsewhere: such a picture is none.
-static GLogWriterOutput on_warning(GLogLevelFlags level, const GLogField *fields,
-                                   gsize count, void *context)
-{
-    const char *domain = "", *reason = "";
-    for (gsize i = 0; i < count; i++) {
-        if (strcmp(fields[i].key, "GLIB_DOMAIN") == 0) {
-            domain = fields[i].value;
-        }
-        if (strcmp(fields[i].key, "MESSAGE") == 0) {
-            reason = fields[i].value;
-        }
-    }
-    if ((level & (G_LOG_LEVEL_CRITICAL | G_LOG_LEVEL_WARNING)) != 0 &&
-        strcmp(domain, "Pango") == 0) {
-        end_of_program(reason);
-    }
-    return g_log_writer_default(level, fields, count, context);
-}
-
-void text_when_giving_up(void (*end)(const char *reason))
-{
-    end_of_program = end;
-    g_log_set_default_handler(on_log, NULL);
-    g_log_set_writer_func(on_warning, NULL, NULL);
 }

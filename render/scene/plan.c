@@ -9,13 +9,12 @@
 #include "render/page/picture_file.h"
 
 // Sizes in beam lengths; the least of them in pixels where the arm is small.
-#define BEAM_WIDTH  0.012
-#define HUB_RADIUS  0.05
-#define PIN_RADIUS  0.008
-#define SLAB_FROM   0.93 // of a flat wall, along the arm
-#define SLAB_TO     1.07
-#define CLOSE_WIDTH 0.10 // what a close-up shows across
-#define COIL_TURNS  10
+#define BEAM_WIDTH 0.012
+#define HUB_RADIUS 0.05
+#define PIN_RADIUS 0.008
+#define SLAB_FROM  0.93 // of a flat wall, along the arm
+#define SLAB_TO    1.07
+#define COIL_TURNS 10
 
 // A plan in the making.
 typedef struct plan_painter {
@@ -24,28 +23,6 @@ typedef struct plan_painter {
     const plan_view *view;
     vector *joints, *curve;
 } plan_painter;
-
-double plan_x(const plan_view *v, double x)
-{
-    return (x - v->left) * v->scale;
-}
-
-double plan_y(const plan_view *v, double y)
-{
-    return v->height - (y - v->bottom) * v->scale * v->magnified;
-}
-
-plan_view plan_close_up(const parameters *p, double width, double height)
-{
-    assert(width > 0 && height > 0);
-    const double length = p->arm.length, scale = width / (CLOSE_WIDTH * length);
-    return (plan_view){.left = length * cos(p->wall.angle) - 0.6 * width / scale,
-                       .bottom = length * sin(p->wall.angle) - 0.5 * height / scale,
-                       .scale = scale,
-                       .magnified = 1,
-                       .width = width,
-                       .height = height};
-}
 
 // A length in beam lengths as pixels, not less than `least`.
 static double size_of(const plan_painter *g, double lengths, double least)

@@ -1,6 +1,9 @@
 // The arm from above on a screen with pixels, drawn quickly and repeatedly.
 #pragma once
 
+#include <assert.h>
+#include <math.h>
+
 #include "render/scene/scene.h"
 
 // The transformation from metres to pixels, with magnified height.
@@ -31,10 +34,29 @@ typedef struct plan {
 // Paints the plan over the whole picture, from the origin of the cairo context.
 void plan_paint(cairo_t *cr, const plan *p, const plan_view *v);
 
+#define PLAN_CLOSE_WIDTH 0.10 // what a close-up shows across, in beam lengths
+
 // A close-up of the contact: the point where the tip meets the wall is in the middle of a
 // picture of this size [pixels], undistorted.
-plan_view plan_close_up(const parameters *p, double width, double height);
+static inline plan_view plan_close_up(const parameters *p, double width, double height)
+{
+    assert(width > 0 && height > 0);
+    const double length = p->arm.length, scale = width / (PLAN_CLOSE_WIDTH * length);
+    return (plan_view){.left = length * cos(p->wall.angle) - 0.6 * width / scale,
+                       .bottom = length * sin(p->wall.angle) - 0.5 * height / scale,
+                       .scale = scale,
+                       .magnified = 1,
+                       .width = width,
+                       .height = height};
+}
 
 // The position of a point [m] on the picture [pixels, down from its upper edge].
-double plan_x(const plan_view *v, double x);
-double plan_y(const plan_view *v, double y);
+static inline double plan_x(const plan_view *v, double x)
+{
+    return (x - v->left) * v->scale;
+}
+
+static inline double plan_y(const plan_view *v, double y)
+{
+    return v->height - (y - v->bottom) * v->scale * v->magnified;
+}

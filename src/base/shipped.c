@@ -18,6 +18,7 @@ static const struct {
     [SHIPPED_MANUAL] = {IMPACTLAB_MANUAL_IN_PREFIX, IMPACTLAB_MANUAL},
     [SHIPPED_PROGRAM] = {IMPACTLAB_PROGRAM_IN_PREFIX, IMPACTLAB_PROGRAM},
     [SHIPPED_PAGE] = {IMPACTLAB_PAGE_IN_PREFIX, IMPACTLAB_PAGE},
+    [SHIPPED_DRAWING] = {IMPACTLAB_DRAWING_IN_PREFIX, IMPACTLAB_DRAWING},
 };
 
 // The file that this very code was loaded from: the program, or the shared library in

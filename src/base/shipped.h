@@ -7,6 +7,7 @@ typedef enum shipped_part {
     SHIPPED_MANUAL,    // the folder with README.md and docs
     SHIPPED_PROGRAM,   // impactlab
     SHIPPED_PAGE,      // the lab's page for a browser in one file, if it was built
+    SHIPPED_DRAWING,   // the module that draws
 } shipped_part;
 
 // The part's path, to be freed, whether it is there or not; NULL without memory. The

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "render/scene/film.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 
@@ -144,7 +143,7 @@ static int film_runs(const arguments *a, const filmed_runs *m)
 
     // the film itself
     fault f = {0};
-    const status code = film_write(runs, m->run, &o, a->output, &f);
+    const status code = drawing()->film_write(runs, m->run, &o, a->output, &f);
     if (shows_progress) {
         fprintf(stderr, "\r%78s\r", "");
     }
@@ -170,7 +169,7 @@ static int check_film_request(const arguments *a)
         return ended;
     }
     fault f = {0};
-    if (film_file_check(a->output, &f) != STATUS_OK) {
+    if (drawing()->film_file_check(a->output, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     return EXIT_DONE;
@@ -222,6 +221,7 @@ const command animate_command = {
     .least = 1,
     .most = FILM_RUNS,
     .takes_scenarios = true,
+    .draws = true,
     .help =
         "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any "
         "other name is that of a folder, to\n"

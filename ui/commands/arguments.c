@@ -11,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "render/figures/artwork.h"
+#include "render/page/picture_path.h"
 #include "src/base/input_file.h"
 #include "src/base/numbers.h"
 #include "src/base/result_places.h"
@@ -460,7 +460,7 @@ static int claim_results(const arguments *a)
 
     // the text of a picture that has none of its own
     if (a->bare && a->plot != NULL) {
-        g_autofree char *text = artwork_beside(a->plot, ".txt");
+        g_autofree char *text = picture_beside(a->plot, ".txt");
         if (!result_places_add(text)) {
             return complain("two results cannot both be written to %s", text);
         }
@@ -468,7 +468,7 @@ static int claim_results(const arguments *a)
 
     // the PDF that LaTeX reads for an SVG
     if (a->latex != NULL && a->plot != NULL) {
-        g_autofree char *read = latex_picture(a->plot);
+        g_autofree char *read = picture_for_latex(a->plot);
         if (strcmp(read, a->plot) != 0 && !result_places_add(read)) {
             return complain("two results cannot both be written to %s", read);
         }

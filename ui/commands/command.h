@@ -33,6 +33,7 @@ struct command {
     const char *operands; // as usage shows them, "SCENARIO"
     int least, most;      // number of operands
     bool takes_scenarios; // operands are scenarios or files
+    bool draws;           // pictures, whatever its options say
 
     // other values that an operand may have: the i-th, NULL after the last; NULL if there
     // are none

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "render/page/text.h"
 #include "src/base/numbers.h"
 #include "src/base/result_places.h"
 
@@ -113,7 +112,9 @@ int read_picture_options(const arguments *a, figure_options *o)
     }
 
     fault f = {0};
-    if (o->look.font != NULL && text_check_family(o->look.font, &f) != STATUS_OK) {
+    if (o->look.font != NULL &&
+        (drawing_open(&f) != STATUS_OK ||
+         drawing()->text_check_family(o->look.font, &f) != STATUS_OK)) {
         return complain_fault(&f);
     }
     return EXIT_DONE;
@@ -131,10 +132,10 @@ static int publish_figure(const arguments *a, const figure *fig)
     }
 
     // its numbers stand beside it, unless another result is written there
-    g_autofree char *csv = artwork_beside(a->plot, ".csv");
+    g_autofree char *csv = picture_beside(a->plot, ".csv");
     const bool with_csv = result_places_find(csv) == NULL;
     fault f = {0};
-    if (figure_publish(fig, &o, a->plot, with_csv, &f) != STATUS_OK) {
+    if (drawing()->figure_publish(fig, &o, a->plot, with_csv, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     return EXIT_DONE;
@@ -165,7 +166,7 @@ int publish_study(const arguments *a, const scenario *s, const char *shows,
 int publish_owned(const arguments *a, owned_figure *o)
 {
     const int result = publish_figure(a, &o->figure);
-    owned_figure_destroy(o);
+    drawing()->owned_figure_destroy(o);
     return result;
 }
 
@@ -181,13 +182,14 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs,
 
     // the figure, drawn once it is made
     fault f = {0};
-    owned_figure *created = run_figure_create(title, NULL, 0, runs, run_count, &o, &f);
+    owned_figure *created =
+        drawing()->run_figure_create(title, NULL, 0, runs, run_count, &o, &f);
     if (created == NULL) {
         return complain_fault(&f);
     }
 
-    SCOPED(artwork_finish) artwork drawn = artwork_of_owned(created);
-    if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
+    SCOPED(artwork_finish) artwork drawn = drawing()->artwork_of_owned(created);
+    if (drawing()->artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     return EXIT_DONE;
@@ -248,7 +250,7 @@ scene_options read_view(const arguments *a)
     bool known = read_theme(a, &o.theme) == EXIT_DONE &&
                  read_exaggeration(a->exaggerate, &o.exaggerate);
     if (a->gl != NULL) {
-        known = scene_renderer_find(a->gl, &o.renderer);
+        known = drawing()->scene_renderer_find(a->gl, &o.renderer);
     }
     if (a->camera != NULL) {
         known = camera_read(a->camera, &o.camera) && known;
@@ -294,7 +296,8 @@ int check_scene(const arguments *a)
     }
 
     fault f = {0};
-    if (a->scene != NULL && scene_check_path(a->scene, &f) != STATUS_OK) {
+    if (a->scene != NULL && (drawing_open(&f) != STATUS_OK ||
+                             drawing()->scene_check_path(a->scene, &f) != STATUS_OK)) {
         return complain_fault(&f);
     }
     return EXIT_DONE;
@@ -321,7 +324,7 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
                                  .times = times,
                                  .count = count};
     fault f = {0};
-    if (scene_write(&shown, a->scene, &f) != STATUS_OK) {
+    if (drawing()->scene_write(&shown, a->scene, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     return EXIT_DONE;

@@ -1,9 +1,7 @@
 // Pictures made by commands, with one set of options for all of them.
 #pragma once
 
-#include "render/figures/artwork.h"
-#include "render/figures/figures.h"
-#include "render/scene/scene.h"
+#include "render/drawing.h"
 #include "ui/commands/command.h"
 
 // Reads the options of page_options. Returns EXIT_DONE, or reports an error and returns

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/figures/figures.h"
 #include "src/base/json.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
@@ -45,13 +44,13 @@ static int complain_figure(const char *id)
 {
     nearest_word near = nearest_begin(id);
     const thesis_figure *known;
-    for (int i = 0; (known = thesis_figure_at(i)) != NULL; i++) {
+    for (int i = 0; (known = drawing()->thesis_figure_at(i)) != NULL; i++) {
         nearest_try(&near, known->id);
     }
 
     const char *suggested = near.best;
     if (suggested == NULL) {
-        suggested = thesis_figure_at(0)->id;
+        suggested = drawing()->thesis_figure_at(0)->id;
     }
     return complain("there is no figure '%s', did you mean '%s'? (impactlab figures "
                     "--help lists all)",
@@ -64,17 +63,17 @@ static int choose_figures(figure_list *list, const arguments *a)
 {
     list->count = (size_t)a->operand_count;
     if (list->count == 0) {
-        list->count = (size_t)thesis_figure_count();
+        list->count = (size_t)drawing()->thesis_figure_count();
     }
     list->figures = g_new0(asked_figure, list->count);
 
     // in their order
     for (size_t i = 0; i < list->count; i++) {
         if (a->operand_count == 0) {
-            list->figures[i].figure = thesis_figure_at((int)i);
+            list->figures[i].figure = drawing()->thesis_figure_at((int)i);
             continue;
         }
-        list->figures[i].figure = thesis_figure_find(a->operands[i]);
+        list->figures[i].figure = drawing()->thesis_figure_find(a->operands[i]);
         if (list->figures[i].figure == NULL) {
             return complain_figure(a->operands[i]);
         }
@@ -125,8 +124,8 @@ static void draw_listed_figure(void *context, size_t i, void *scratch, void *res
         *code = fault_no_memory(&drawn->fault);
         return;
     }
-    *code = figure_draw(drawn->figure->id, &list->options, list->folder, list->formats,
-                        tex.stream, &drawn->fault);
+    *code = drawing()->figure_draw(drawn->figure->id, &list->options, list->folder,
+                                   list->formats, tex.stream, &drawn->fault);
     drawn->tex = text_stream_close(&tex, NULL);
     if (drawn->tex == NULL) {
         *code = fault_no_memory(&drawn->fault);
@@ -272,7 +271,11 @@ static int draw_thesis_figures(const arguments *a)
 static const char *figure_word(const command_list *all, int i)
 {
     (void)all;
-    const thesis_figure *known = thesis_figure_at(i);
+    fault unused = {0};
+    if (drawing_open(&unused) != STATUS_OK) {
+        return NULL;
+    }
+    const thesis_figure *known = drawing()->thesis_figure_at(i);
     if (known == NULL) {
         return NULL;
     }
@@ -291,6 +294,7 @@ const command figures_command = {
     .operands = "[ID]...",
     .least = 0,
     .most = 1 << 20,
+    .draws = true,
     .help =
         "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a "
         "CSV of what is\n"

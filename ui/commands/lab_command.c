@@ -9,10 +9,12 @@
 #include <string.h>
 #include <wchar.h>
 
+#include "render/drawing.h"
 #include "src/base/clock.h"
 #include "src/base/text_stream.h"
 #include "src/base/words.h"
 #include "ui/commands/results.h"
+#include "ui/explorer/actions/actions.h"
 #include "ui/explorer/explorer.h"
 #include "ui/terminal/pictures.h"
 #include "ui/terminal/terminal.h"
@@ -135,13 +137,18 @@ static double now_in_seconds(void)
     return clock_seconds(CLOCK_MONOTONIC);
 }
 
-// Fits pictures between the characters to what the terminal says of itself.
+// Fits pictures between the characters to what the terminal says of itself; without the
+// module that draws there are none, and the lab says so once.
 static void fit_pictures(live_lab *lab)
 {
     const terminal_pixels known = terminal_pixels_known();
-    const looks *l = &lab->ex->view.looks;
+    explorer_input *input = &lab->ex->input;
+    looks *l = &lab->ex->view.looks;
     picture_layer *layer = &lab->pictures;
     lab->screen.pictures = NULL;
+    if (l->pixels && known.there) {
+        l->pixels = act_succeeded(input, drawing_open(&input->fault));
+    }
     if (l->pixels && known.there) {
         lab->screen.pictures = layer;
     }

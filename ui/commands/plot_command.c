@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-#include "render/figures/figures.h"
-#include "render/page/picture_file.h"
 #include "src/base/result_places.h"
 #include "src/base/words.h"
 #include "ui/commands/command_pictures.h"
@@ -26,8 +24,8 @@ static char *default_picture(const char *recipe)
 // line has not. Returns the exit status.
 static int claim_places(const arguments *a, const char *path)
 {
-    g_autofree char *csv = artwork_beside(path, ".csv");
-    g_autofree char *text = artwork_beside(path, ".txt");
+    g_autofree char *csv = picture_beside(path, ".csv");
+    g_autofree char *text = picture_beside(path, ".txt");
     bool free_places = result_places_add(csv);
     if (a->plot == NULL) {
         free_places = free_places && result_places_add(path) &&
@@ -46,13 +44,14 @@ static int draw_recipe(const char *recipe, const figure_options *o, const char *
     SCOPED(artwork_finish) artwork art = {0};
     fault f = {0};
     interrupts_catch();
-    if (recipe_open(recipe, o, report_to_stderr, NULL, &art, &f) != STATUS_OK) {
+    if (drawing()->recipe_open(recipe, o, report_to_stderr, NULL, &art, &f) !=
+        STATUS_OK) {
         if (f.code == STATUS_OK) {
             return EXIT_BAD_ARGUMENTS;
         }
         return complain_fault(&f);
     }
-    if (artwork_publish(&art, o, path, true, &f) != STATUS_OK) {
+    if (drawing()->artwork_publish(&art, o, path, true, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     return EXIT_DONE;
@@ -69,7 +68,7 @@ static int plot_recipe(const arguments *a)
     }
 
     // without options that change it the picture remembers its recipe alone
-    g_autofree char *made_by = recipe_command(recipe);
+    g_autofree char *made_by = drawing()->recipe_command(recipe);
     if (strstr(a->command_line, " -") == NULL) {
         o.command = made_by;
     }
@@ -108,6 +107,7 @@ const command plot_command = {
     .operands = "RECIPE.yaml",
     .least = 1,
     .most = 1,
+    .draws = true,
     .help =
         "A recipe names runs with changed parameters, measured data and the databases of "
         "sweeps, and the\n"

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "render/figures/figures.h"
+#include "render/drawing.h"
 #include "src/base/shipped.h"
 #include "ui/commands/progress.h"
 
@@ -16,7 +16,7 @@ static int write_report(const arguments *a)
     }
     int items = a->operand_count;
     if (items == 0) {
-        items = thesis_figure_count();
+        items = drawing()->thesis_figure_count();
     }
 
     // each item is computed, then drawn
@@ -28,7 +28,7 @@ static int write_report(const arguments *a)
         page = shipped_path(SHIPPED_PAGE);
     }
     const report_request what = {a->operands, a->operand_count, page};
-    const status code = report_write(folder, &what, monitor, &f);
+    const status code = drawing()->report_write(folder, &what, monitor, &f);
     free(page);
     work_end();
 
@@ -61,6 +61,7 @@ const command report_command = {
     .least = 0,
     .most = 64,
     .takes_scenarios = true,
+    .draws = true,
     .help =
         "Of the scenarios and recipes named, or without any of the whole thesis. Into "
         "the folder 'report' unless -o says otherwise. The page needs no other file and "

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "render/page/picture_file.h"
+#include "render/drawing.h"
 #include "src/base/json.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
@@ -30,28 +30,30 @@ bool summary_wanted(const arguments *a)
     return !a->quiet;
 }
 
-// Checks the path of one result. Returns the exit status.
-static int check_result_path(const option_row *o, const char *path)
+// Checks the path of one result, and that pictures can be drawn if it is one.
+static status check_result(const option_row *o, const char *path, fault *f)
 {
-    fault f = {0};
-    if (o->type == OPTION_PICTURE && picture_check_path(path, &f) != STATUS_OK) {
-        return complain_fault(&f);
+    if (o->type == OPTION_PICTURE) {
+        TRY(picture_check_path(path, f));
+        return drawing_open(f);
     }
-    if (whole_file_check(path, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
-    return EXIT_DONE;
+    return whole_file_check(path, f);
 }
 
 int check_results(const arguments *a)
 {
     const option_row *o;
     int result = EXIT_DONE;
+    fault f = {0};
+    if (a->command->draws && drawing_open(&f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         // a place is checked by the command itself
         const char *path = option_written(a, o);
-        if (path != NULL && o->type != OPTION_PLACE) {
-            result = worse(result, check_result_path(o, path));
+        if (path != NULL && o->type != OPTION_PLACE &&
+            check_result(o, path, &f) != STATUS_OK) {
+            result = worse(result, complain_fault(&f));
         }
     }
     return result;

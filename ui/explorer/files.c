@@ -4,8 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "render/figures/figures.h"
-#include "render/scene/scene.h"
+#include "render/drawing.h"
 #include "src/base/input_file.h"
 #include "src/base/numbers.h"
 #include "src/base/result_places.h"
@@ -110,7 +109,7 @@ static void name_of_run(const session *s, char *stem, size_t size)
 // Whether a file of a name is there, or a recipe beside it.
 static bool has_file(const char *name)
 {
-    g_autofree char *recipe = artwork_beside(name, ".yaml");
+    g_autofree char *recipe = picture_beside(name, ".yaml");
     return exists(name) || exists(recipe);
 }
 
@@ -192,8 +191,8 @@ static double cut_width(char *name)
 // FIGURE.png.yaml.
 static char *recipe_name(const char *name, bool over)
 {
-    g_autofree char *usual = artwork_beside(name, ".yaml");
-    if (!exists(usual) || (over && recipe_is(usual))) {
+    g_autofree char *usual = picture_beside(name, ".yaml");
+    if (!exists(usual) || (over && drawing()->recipe_is(usual))) {
         return g_steal_pointer(&usual);
     }
     return g_strconcat(name, ".yaml", NULL);
@@ -204,7 +203,8 @@ static status write_figure(const explorer_model *model, const explorer_view *vie
                            int index, const char *name, const char *path, double width,
                            fault *f)
 {
-    g_autofree char *folder = g_path_get_dirname(name), *command = recipe_command(path);
+    g_autofree char *folder = g_path_get_dirname(name),
+                    *command = drawing()->recipe_command(path);
     text_stream recipe;
     size_t length;
     if (!text_stream_open(&recipe)) {
@@ -220,9 +220,10 @@ static status write_figure(const explorer_model *model, const explorer_view *vie
     // the picture comes from the text that plot will read
     artwork drawn = {0};
     const figure_options options = {.command = command};
-    code = recipe_open_text(text, length, path, &options, keep_first_fault, f, &drawn, f);
+    code = drawing()->recipe_open_text(text, length, path, &options, keep_first_fault, f,
+                                       &drawn, f);
     if (code == STATUS_OK) {
-        code = artwork_publish(&drawn, &options, name, false, f);
+        code = drawing()->artwork_publish(&drawn, &options, name, false, f);
         artwork_finish(&drawn);
     }
     whole_file file;
@@ -245,7 +246,7 @@ static bool figure_is_free(const explorer_model *model, explorer_input *input,
     if (!over && exists(name)) {
         return tell_file(input, false, name);
     }
-    if (exists(recipe) && !(over && recipe_is(recipe))) {
+    if (exists(recipe) && !(over && drawing()->recipe_is(recipe))) {
         return tell_file(input, false, recipe);
     }
     return is_free(model, input, name) && is_free(model, input, recipe);
@@ -259,6 +260,9 @@ static bool save_figures(const explorer_model *model, const explorer_view *view,
     g_autofree char *recipe = NULL;
     if (count == 0) {
         return act_refuse(input, "no pane of curves is shown, 1 to 9 show them");
+    }
+    if (!act_succeeded(input, drawing_open(&input->fault))) {
+        return false;
     }
     for (int i = 0; i < count; i++) {
         g_autofree char *one = picture_name(name, i);
@@ -408,7 +412,8 @@ bool act_scene(const explorer_model *model, explorer_input *input, const char *a
         return act_refuse(input, "%.200s is there already: give the scene another name",
                           argument);
     }
-    if (!act_need_whole_run(model, input)) {
+    if (!act_need_whole_run(model, input) ||
+        !act_succeeded(input, drawing_open(&input->fault))) {
         return false;
     }
 
@@ -418,7 +423,7 @@ bool act_scene(const explorer_model *model, explorer_input *input, const char *a
                                 .options = options,
                                 .times = &s->now,
                                 .count = 1};
-    return act_succeeded(input, scene_write(&shot, argument, &input->fault)) &&
+    return act_succeeded(input, drawing()->scene_write(&shot, argument, &input->fault)) &&
            tell_file(input, true, argument);
 }
 

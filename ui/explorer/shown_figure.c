@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/plot/trace_plot.h"
+#include "render/drawing.h"
 #include "src/base/numbers.h"
 #include "ui/explorer/explorer.h"
 
@@ -64,8 +64,8 @@ static int numbers_of(const explorer_view *view, int numbers[PANES + 1])
 int shown_figure_count(const explorer_model *model, const explorer_view *view)
 {
     int numbers[PANES + 1];
-    const bool sweep = view->side.panel == PANEL_SWEEP && model->sweep.count > 0;
-    return numbers_of(view, numbers) + sweep;
+    const bool swept = view->side.panel == PANEL_SWEEP && model->sweep.count > 0;
+    return numbers_of(view, numbers) + swept;
 }
 
 // --- words and numbers -----------------------------------------------------------------
@@ -163,9 +163,9 @@ static status write_changed(const shown_recipe *r, const scenario *base,
 // A run of a sweep.
 static status write_swept(const shown_recipe *r, int index, fault *f)
 {
-    const lab_sweep *sweep = &r->model->sweep;
+    const lab_sweep *swept = &r->model->sweep;
     scenario changed;
-    TRY(sweep_axes_scenario(&sweep->axis, 1, &sweep->runs[index].value,
+    TRY(sweep_axes_scenario(&swept->axis, 1, &swept->runs[index].value,
                             &r->model->session.effective, &changed, f));
     write_scenario_text(r, &changed);
     return STATUS_OK;
@@ -174,13 +174,13 @@ static status write_swept(const shown_recipe *r, int index, fault *f)
 // What a run is called.
 static void run_label(const shown_recipe *r, const shown_run *run, char label[RUN_NAME])
 {
-    const lab_sweep *sweep = &r->model->sweep;
+    const lab_sweep *swept = &r->model->sweep;
     if (run->kind == SHOWN_SWEPT) {
         char value[SWEEP_VALUE_TEXT];
-        sweep_axis_format(&sweep->axis, sweep->runs[run->index].value, value,
+        sweep_axis_format(&swept->axis, swept->runs[run->index].value, value,
                           sizeof value);
         snprintf(label, RUN_NAME, "%s %s",
-                 strchr(sweep_axis_parameter(&sweep->axis)->path, '.') + 1, value);
+                 strchr(sweep_axis_parameter(&swept->axis)->path, '.') + 1, value);
     } else if (run->kind == SHOWN_PINNED) {
         snprintf(label, RUN_NAME, "%s", r->model->pinned.runs[run->index].name);
     } else if (run->kind == SHOWN_OPENED) {
@@ -355,8 +355,8 @@ static void write_texts(const shown_recipe *r, bool over_time, double width)
     const session *s = &model->session;
     char titled[SCENARIO_TITLED];
     const trace_run run = {&s->effective, &s->run};
-    g_autofree char *caption =
-        over_time ? trace_caption(&run, 1, "contact") : trace_shared(&run, 1);
+    g_autofree char *caption = over_time ? drawing()->trace_caption(&run, 1, "contact")
+                                         : drawing()->trace_shared(&run, 1);
     caption[0] = g_ascii_toupper(caption[0]);
     fputs("# impactlab plot draws this picture of the lab again\n", r->stream);
     write_quoted(r, "title: ",
@@ -451,30 +451,30 @@ static status write_over_other(shown_recipe *r, int pane_index, double width, fa
 // The quantity of a sweep over its parameter, or as a map over two.
 static status write_sweep_figure(shown_recipe *r, double width)
 {
-    const lab_sweep *sweep = &r->model->sweep;
-    const bool is_map = lab_sweep_is_map(sweep);
-    const char *metric = summary_table[sweep->metric].key;
+    const lab_sweep *swept = &r->model->sweep;
+    const bool is_map = lab_sweep_is_map(swept);
+    const char *metric = summary_table[swept->metric].key;
     write_texts(r, false, width);
     fprintf(r->stream, "tables:\n  - name: sweep\n    x: %s\n    y: %s\n",
-            sweep_axis_parameter(&sweep->axis)->path,
-            is_map ? sweep_axis_parameter(&sweep->second)->path : metric);
+            sweep_axis_parameter(&swept->axis)->path,
+            is_map ? sweep_axis_parameter(&swept->second)->path : metric);
     if (is_map) {
         fprintf(r->stream, "    z: %s\n", metric);
     }
     fputs("    rows:\n", r->stream);
-    for (int i = 0; i < sweep->count; i++) {
+    for (int i = 0; i < swept->count; i++) {
         double values[2];
-        lab_sweep_values(sweep, i, values);
+        lab_sweep_values(swept, i, values);
         write_value(r, "      - [", values[0]);
         if (is_map) {
             write_value(r, ", ", values[1]);
         }
-        write_value(r, ", ", lab_sweep_metric(sweep, i, sweep->metric));
+        write_value(r, ", ", lab_sweep_metric(swept, i, swept->metric));
         fputs("]\n", r->stream);
     }
     fprintf(r->stream, "panels:\n  - {from: [sweep]%s, weight: 2}\n",
-            is_map && sweep->second.logarithmic ? ", log: true" : "");
-    fputs(sweep->axis.logarithmic ? "x: {log: true}\n" : "", r->stream);
+            is_map && swept->second.logarithmic ? ", log: true" : "");
+    fputs(swept->axis.logarithmic ? "x: {log: true}\n" : "", r->stream);
     return STATUS_OK;
 }
 

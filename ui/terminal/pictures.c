@@ -4,10 +4,14 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "render/drawing.h"
+
 void pictures_finish(picture_layer *layer)
 {
     for (int i = 0; i < PICTURES; i++) {
-        cairo_surface_destroy(layer->items[i].surface);
+        if (layer->items[i].surface != NULL) {
+            drawing()->cairo_surface_destroy(layer->items[i].surface);
+        }
     }
     *layer = (picture_layer){0};
 }
@@ -17,21 +21,6 @@ void pictures_clear(screen *s)
     if (s->pictures != NULL) {
         s->pictures->count = 0;
     }
-}
-
-// Gives a picture a surface of its size, the one it has if that fits; false if cairo has
-// none.
-static bool fit_surface(screen_picture *p, int width, int height)
-{
-    const bool fits = p->surface != NULL &&
-                      cairo_surface_status(p->surface) == CAIRO_STATUS_SUCCESS &&
-                      cairo_image_surface_get_width(p->surface) == width &&
-                      cairo_image_surface_get_height(p->surface) == height;
-    if (!fits) {
-        cairo_surface_destroy(p->surface);
-        p->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
-    }
-    return cairo_surface_status(p->surface) == CAIRO_STATUS_SUCCESS;
 }
 
 cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
@@ -50,7 +39,8 @@ cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
         return NULL;
     }
     screen_picture *p = &layer->items[layer->count];
-    if (!fit_surface(p, width * layer->cell_width, height * layer->cell_height)) {
+    if (!drawing()->pixel_image_fit(&p->surface, width * layer->cell_width,
+                                    height * layer->cell_height)) {
         return NULL;
     }
 
@@ -67,18 +57,16 @@ cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
     layer->count++;
 
     // its background
-    cairo_t *cr = cairo_create(p->surface);
-    cairo_set_source_rgb(cr, layer->ground.red / 255.0, layer->ground.green / 255.0,
-                         layer->ground.blue / 255.0);
-    cairo_paint(cr);
-    return cr;
+    const colour ground = {layer->ground.red / 255.0, layer->ground.green / 255.0,
+                           layer->ground.blue / 255.0};
+    return drawing()->pixel_image_begin(p->surface, ground);
 }
 
 // Words in the middle of where a picture was to be, and blanks around them.
-static void put_words(screen *s, int picture, const char *words)
+static void put_words(screen *s, int index, const char *words)
 {
-    const screen_picture *p = &s->pictures->items[picture];
-    const uint32_t glyph = GLYPH_PICTURE + (uint32_t)picture;
+    const screen_picture *p = &s->pictures->items[index];
+    const uint32_t glyph = GLYPH_PICTURE + (uint32_t)index;
     for (int row = p->y; row < p->y + p->height; row++) {
         for (int column = p->x; column < p->x + p->width; column++) {
             if (s->cells[(long)row * s->width + column].glyph == glyph) {
@@ -97,8 +85,7 @@ static void put_words(screen *s, int picture, const char *words)
 void picture_end(screen *s, cairo_t *cr)
 {
     picture_layer *layer = s->pictures;
-    const bool drawn = cairo_status(cr) == CAIRO_STATUS_SUCCESS;
-    cairo_destroy(cr);
+    const bool drawn = drawing()->pixel_image_end(cr);
     assert(layer->count > 0);
     if (!drawn) {
         put_words(s, layer->count - 1, "no memory to draw this");
@@ -133,11 +120,11 @@ static picture_region *region_above(picture_region *regions, int count, int x, i
 
 // Adds the regions of one picture behind the `count` that there are; returns how many
 // there are then.
-static int add_regions(const screen *s, int picture, int most_width, int most_height,
+static int add_regions(const screen *s, int index, int most_width, int most_height,
                        picture_region *regions, int count)
 {
-    const screen_picture *p = &s->pictures->items[picture];
-    const uint32_t glyph = GLYPH_PICTURE + (uint32_t)picture;
+    const screen_picture *p = &s->pictures->items[index];
+    const uint32_t glyph = GLYPH_PICTURE + (uint32_t)index;
     const int first = count;
     for (int y = p->y; y < p->y + p->height; y++) {
         int x = p->x;
@@ -154,7 +141,7 @@ static int add_regions(const screen *s, int picture, int most_width, int most_he
             if (above != NULL) {
                 above->height++;
             } else if (count < PICTURE_REGIONS) {
-                regions[count++] = (picture_region){picture, x, y, length, 1};
+                regions[count++] = (picture_region){index, x, y, length, 1};
             }
             x += length;
         }
@@ -171,17 +158,33 @@ int pictures_regions(const screen *s, int most_width, int most_height,
     }
     int count = 0;
     for (int i = 0; i < s->pictures->count; i++) {
-        cairo_surface_flush(s->pictures->items[i].surface);
         count = add_regions(s, i, most_width, most_height, regions, count);
     }
     return count;
 }
 
+pixel_block picture_block(const screen *s, const picture_region *r)
+{
+    const screen_picture *p = &s->pictures->items[r->picture];
+    const int cell_width = s->pictures->cell_width;
+    const int cell_height = s->pictures->cell_height;
+    int stride;
+    const uint32_t *pixels = drawing()->pixel_image_rows(p->surface, &stride);
+
+    // from the region's upper left corner on
+    const long left = (long)(r->x - p->x) * cell_width;
+    const long top = (long)(r->y - p->y) * cell_height;
+    return (pixel_block){.pixels = pixels + top * stride + left,
+                         .width = r->width * cell_width,
+                         .height = r->height * cell_height,
+                         .stride = stride};
+}
+
 rgb picture_ink(const screen *s, colour_theme theme, ink i)
 {
-    rgb colour;
-    if (ink_rgb(theme, i, &colour)) {
-        return colour;
+    rgb known;
+    if (ink_rgb(theme, i, &known)) {
+        return known;
     }
 
     // the default colour of text: what stands out more

@@ -5,6 +5,7 @@
 #include <cairo.h>
 
 #include "ui/terminal/ink_colours.h"
+#include "ui/terminal/pixels.h"
 #include "ui/terminal/screen.h"
 
 enum { PICTURES = 16, PICTURE_REGIONS = 128 };
@@ -50,6 +51,9 @@ void picture_end(screen *s, cairo_t *cr);
 // higher than `most_width` x `most_height` cells; returns how many.
 int pictures_regions(const screen *s, int most_width, int most_height,
                      picture_region regions[PICTURE_REGIONS]);
+
+// The part of a picture that a region shows.
+pixel_block picture_block(const screen *s, const picture_region *r);
 
 // The colour of an ink in pictures; the terminal's default text colour becomes black or
 // white.

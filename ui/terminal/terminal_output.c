@@ -233,24 +233,6 @@ terminal_pixels terminal_pixels_known(void)
     return known;
 }
 
-// The part of a picture that a region shows.
-static pixel_block block_of(const screen *s, const picture_region *r)
-{
-    const screen_picture *p = &s->pictures->items[r->picture];
-    const int cell_width = s->pictures->cell_width;
-    const int cell_height = s->pictures->cell_height;
-    const int stride = cairo_image_surface_get_stride(p->surface) / 4;
-
-    // from the region's upper left corner on
-    const long left = (long)(r->x - p->x) * cell_width;
-    const long top = (long)(r->y - p->y) * cell_height;
-    const void *pixels = cairo_image_surface_get_data(p->surface);
-    return (pixel_block){.pixels = (const uint32_t *)pixels + top * stride + left,
-                         .width = r->width * cell_width,
-                         .height = r->height * cell_height,
-                         .stride = stride};
-}
-
 // Fowler, Noll and Vo's hash, of pixels instead of bytes.
 static uint64_t hash_of(const pixel_block *b)
 {
@@ -291,7 +273,7 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
     const bool kitty = tty.pixels.kitty;
     for (int i = 0; i < count; i++) {
         const picture_region *r = &regions[i];
-        const pixel_block block = block_of(s, r);
+        const pixel_block block = picture_block(s, r);
         const uint64_t hash = hash_of(&block);
         if (!whole && region_is_shown(i, r, hash)) {
             continue;

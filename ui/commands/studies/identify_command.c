@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/plot/study_plot.h"
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/study/identify/identify.h"
@@ -366,7 +365,7 @@ static void write_drawn_arms(FILE *stream, const void *found)
 static int plot_fit(const arguments *a, const void *found)
 {
     const fit_outcome *o = found;
-    return publish_owned(a, identify_figure_create(&o->fit));
+    return publish_owned(a, drawing()->identify_figure_create(&o->fit));
 }
 
 // --- the command -----------------------------------------------------------------------

@@ -5,7 +5,7 @@
 #include <glib.h>
 #include <string.h>
 
-#include "render/figures/artwork.h"
+#include "render/page/picture_path.h"
 #include "src/base/whole_file.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/studies/loop_analysis.h"
@@ -26,8 +26,8 @@ static linear_place read_place(const char *word)
 // Whether the numbers of both pictures would stand in one file.
 static bool share_numbers(const arguments *a)
 {
-    g_autofree char *of_plot = artwork_beside(a->plot, ".csv");
-    g_autofree char *of_nyquist = artwork_beside(a->nyquist, ".csv");
+    g_autofree char *of_plot = picture_beside(a->plot, ".csv");
+    g_autofree char *of_nyquist = picture_beside(a->nyquist, ".csv");
     return whole_file_same_place(of_plot, of_nyquist);
 }
 

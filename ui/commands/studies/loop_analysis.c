@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "render/plot/study_plot.h"
 #include "src/base/json.h"
 #include "src/base/plain_math.h"
 #include "src/exchange/mat_file.h"
@@ -457,7 +456,8 @@ static int plot_arm(const arguments *a, const analysis *x)
     // the picture
     int result;
     if (code == STATUS_OK) {
-        result = publish_owned(a, bode_figure_create(x->scenario, curves, 2, NULL));
+        result =
+            publish_owned(a, drawing()->bode_figure_create(x->scenario, curves, 2, NULL));
     } else {
         result = complain_fault(&f);
     }
@@ -483,7 +483,8 @@ static int plot_analysis(const arguments *a, const analysis *x)
     }
     const linear_curve gain = {"loop gain", x->response};
     const linear_margins margins = drawn_margins(x);
-    return publish_owned(a, bode_figure_create(x->scenario, &gain, 1, &margins));
+    return publish_owned(a,
+                         drawing()->bode_figure_create(x->scenario, &gain, 1, &margins));
 }
 
 static int plot_nyquist(const arguments *a, const analysis *x)
@@ -492,7 +493,8 @@ static int plot_nyquist(const arguments *a, const analysis *x)
     of_nyquist.plot = a->nyquist;
     const linear_margins margins = drawn_margins(x);
     return publish_owned(&of_nyquist,
-                         nyquist_figure_create(x->scenario, &x->response, &margins));
+                         drawing()->nyquist_figure_create(x->scenario, &x->response,
+                                                          &margins));
 }
 
 // --- the command -----------------------------------------------------------------------

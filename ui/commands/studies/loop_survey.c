@@ -2,7 +2,6 @@
 
 #include <stdio.h>
 
-#include "render/plot/study_plot.h"
 #include "src/base/csv.h"
 #include "src/base/json.h"
 #include "ui/commands/command_pictures.h"
@@ -135,7 +134,7 @@ static int plot_survey(const arguments *a, const void *found)
     for (int k = 0; k < JUDGEMENTS; k++) {
         const sweep_picture shown = {&y->sweep, judgements[k].key, &judgements[k],
                                      y->numbers[k]};
-        drawn[k] = sweep_figure_create(&shown);
+        drawn[k] = drawing()->sweep_figure_create(&shown);
     }
 
     // both as panels of the first one, in which the limit is all that counts
@@ -160,7 +159,7 @@ static int plot_survey(const arguments *a, const void *found)
     const int result =
         publish_titled(a, survey->scenario, "stability of the loop", &both->figure);
     for (int k = 0; k < JUDGEMENTS; k++) {
-        owned_figure_destroy(drawn[k]);
+        drawing()->owned_figure_destroy(drawn[k]);
     }
     return result;
 }

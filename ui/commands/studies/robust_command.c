@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "render/page/text.h"
-#include "render/plot/study_plot.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 #include "src/study/robust/law_exam.h"
@@ -180,9 +178,9 @@ static sweep_request request_of(const robustness *r)
 static int check_draws(const robustness *r)
 {
     const sweep_request request = request_of(r);
-    SCOPED(sweep_finish) sweep plan;
+    SCOPED(sweep_finish) sweep all;
     fault f = {0};
-    if (sweep_plan(&plan, &request, &f) != STATUS_OK) {
+    if (sweep_plan(&all, &request, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     return EXIT_DONE;
@@ -517,7 +515,7 @@ static int plot_robustness(const arguments *a, const void *found)
     const robust_table table = table_of(r);
     char changes[SCENARIO_CHANGES];
     scenario_changes(r->scenario, changes);
-    return publish_owned(a, robust_figure_create(&table, changes));
+    return publish_owned(a, drawing()->robust_figure_create(&table, changes));
 }
 
 // Whether any run did not fail.

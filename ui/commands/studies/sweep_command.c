@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "render/plot/study_plot.h"
 #include "src/base/whole_file.h"
 #include "src/exchange/sweep_table.h"
 #include "src/study/store/sweep_store.h"
@@ -179,7 +178,7 @@ static int write_sweep_rows(const sweep_order *o, sweep_store *store, const char
 static int plot_sweep(const sweep_order *o, const double *values)
 {
     const sweep_picture shown = {.sweep = o->sweep, .key = o->quantity, .values = values};
-    return publish_owned(o->arguments, sweep_figure_create(&shown));
+    return publish_owned(o->arguments, drawing()->sweep_figure_create(&shown));
 }
 
 // Writes the files asked for and prints the summary, of the runs that are done. If one
@@ -273,7 +272,7 @@ static status plan_sweep(const arguments *a, const scenario *base, sweep *s, fau
         TRY(sweep_check_effect(s, i, f));
     }
     if (a->plot != NULL) {
-        return sweep_plot_check(s, a->plot, f);
+        return drawing()->sweep_plot_check(s, a->plot, f);
     }
     return STATUS_OK;
 }

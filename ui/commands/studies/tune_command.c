@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "render/plot/study_plot.h"
 #include "src/base/json.h"
 #include "src/base/whole_file.h"
 #include "src/study/linear/linear.h"
@@ -149,7 +148,7 @@ static int plot_tuning(const arguments *a, const void *found)
     const tuner *t = found;
     char changes[SCENARIO_CHANGES];
     scenario_changes(t->scenario, changes);
-    return publish_owned(a, tune_figure_create(&t->tuning, changes));
+    return publish_owned(a, drawing()->tune_figure_create(&t->tuning, changes));
 }
 
 // Writes what was found. Returns the exit status.

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "render/scene/plan.h"
+#include "render/drawing.h"
 #include "ui/terminal/pictures.h"
 
 enum {
@@ -321,7 +321,7 @@ static void draw_pixels(const explorer_model *model, const explorer_view *view,
                                     picture_colour(s, theme,
                                                    run_ink(model_reference_rank(model))),
                                 .frame = picture_colour(s, theme, INK_FRAME)}};
-    plan_paint(g->picture, &p, &g->view);
+    drawing()->plan_paint(g->picture, &p, &g->view);
 }
 
 // --- the panel -------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/drawing.h"
 #include "render/plot/ticks.h"
 #include "ui/terminal/pictures.h"
 
@@ -148,7 +149,7 @@ void plot_frame_signal(const plot_frame *f, const trace *t, int signal, double u
                               .pattern = f->pattern,
                               .piece = fmax(1, 1.5 * f->pixels.line),
                               .colour = pixel_colour(f, f->colour)};
-        pane_curve_paint(f->picture, &f->pixels, &c);
+        drawing()->pane_curve_paint(f->picture, &f->pixels, &c);
         return;
     }
 
@@ -165,7 +166,8 @@ void plot_frame_signal(const plot_frame *f, const trace *t, int signal, double u
 void plot_frame_cursor(const plot_frame *f, screen *s, double time)
 {
     if (f->picture != NULL) {
-        pane_instant_paint(f->picture, &f->pixels, time, pixel_colour(f, INK_CURSOR));
+        drawing()->pane_instant_paint(f->picture, &f->pixels, time,
+                                      pixel_colour(f, INK_CURSOR));
         return;
     }
     if (!(time >= f->from && time <= f->to)) {
@@ -211,7 +213,8 @@ void plot_frame_level(const plot_frame *f, screen *s, double value, const char *
         return;
     }
     const int length = (int)strlen(name);
-    pane_level_paint(f->picture, &f->pixels, value, pixel_colour(f, INK_FRAME));
+    drawing()->pane_level_paint(f->picture, &f->pixels, value,
+                                pixel_colour(f, INK_FRAME));
     screen_text(s, c->x + c->width - length, y, length, INK_FRAME, name);
 }
 
