@@ -26,13 +26,15 @@ typedef struct bench_arm {
     double start;                              // angle, at rest [rad]
     double amplifier_lag;                      // time constant [s]
     double play;                               // of the hub on the rotor, in all [rad]
-    double force_lag;                          // time constant of the force sensor [s]
+    double joint_damping; // of each joint between two rods, by MuJoCo alone [N m s/rad]
+    double force_lag;     // time constant of the force sensor [s]
 } bench_arm;
 
 // What there is to read at a sample.
 typedef struct bench_sample {
     double angle, velocity; // of the rotor [rad], [rad/s]
     double force;           // that has arrived in the force sensor [N]
+    double pressed; // mean force of the wall since the sample before; by MuJoCo alone [N]
 } bench_sample;
 
 // Runs the bench: sample k of `samples` is taken at k/rate, and command[k] [V] holds from
@@ -40,7 +42,12 @@ typedef struct bench_sample {
 void bench_arm_run(const bench_arm *a, const double *command, int samples, double rate,
                    bench_sample *to);
 
-// The same by MuJoCo. False where this program was built without.
+// The command [V] that a board gives from sample k on, of which `to` has the samples up
+// to that one.
+// NaN ends the run.
+typedef double bench_board(void *context, int k, const bench_sample *to);
+
+// The same by MuJoCo, under a board. False where this program was built without.
 bool bench_has_mujoco(void);
-bool bench_arm_run_mujoco(const bench_arm *a, const double *command, int samples,
-                          double rate, bench_sample *to);
+bool bench_arm_run_mujoco(const bench_arm *a, bench_board *board, void *context,
+                          int samples, double rate, bench_sample *to);

@@ -9,12 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STEP             2.5e-5 // [s]
-#define COUPLING         300.0  // of the rotor, out of its play [N m/rad]
-#define COUPLING_DAMPING 0.02   // [N m s/rad]
-#define CREEP            2e-3   // velocity below which friction is viscous [rad/s]
+#define COUPLING         300.0 // of the rotor, out of its play [N m/rad]
+#define COUPLING_DAMPING 0.02  // [N m s/rad]
+#define CREEP            2e-3  // velocity below which friction is viscous [rad/s]
 
 enum { XML_SIZE = 1 << 15 };
+
+// The step [s]: Euler's method takes damping implicitly and bears a longer one.
+static double step_of(const bench_arm *a)
+{
+    return a->joint_damping > 0 ? 5e-5 : 2.5e-5;
+}
 
 // Writes the model: joint 0 is the rotor's, then those of the rods; the tip is a site.
 static void write_model(const bench_arm *a, char *xml)
@@ -24,18 +29,21 @@ static void write_model(const bench_arm *a, char *xml)
     int at = snprintf(
         xml, XML_SIZE,
         "<mujoco><compiler angle='radian' inertiafromgeom='false'/>"
-        "<option integrator='RK4' timestep='%g'><flag contact='disable' "
+        "<option integrator='%s' timestep='%g'><flag contact='disable' "
         "gravity='disable'/>"
         "</option><worldbody><body><joint axis='0 0 1'/><inertial pos='0 0 0' mass='1' "
         "diaginertia='%.17g %.17g %.17g'/></body>",
-        STEP, a->rotor_inertia, a->rotor_inertia, a->rotor_inertia);
+        a->joint_damping > 0 ? "Euler" : "RK4", step_of(a), a->rotor_inertia,
+        a->rotor_inertia, a->rotor_inertia);
     for (int k = 0; k < a->links; k++) {
         at += snprintf(xml + at, (size_t)(XML_SIZE - at),
-                       "<body pos='%.17g 0 0'><joint axis='0 0 1' stiffness='%.17g'/>"
+                       "<body pos='%.17g 0 0'><joint axis='0 0 1' stiffness='%.17g' "
+                       "damping='%.17g'/>"
                        "<inertial pos='%.17g 0 0' mass='%.17g' diaginertia='%.17g %.17g "
                        "%.17g'/>",
-                       k > 0 ? l : 0, k > 0 ? a->joint_stiffness : 0, l / 2, m,
-                       inertia / 100, inertia, inertia);
+                       k > 0 ? l : 0, k > 0 ? a->joint_stiffness : 0,
+                       k > 0 ? a->joint_damping : 0, l / 2, m, inertia / 100, inertia,
+                       inertia);
     }
     if (a->tip_mass > 0) {
         const double small = 1e-9;
@@ -122,21 +130,28 @@ bool bench_has_mujoco(void)
     return true;
 }
 
-bool bench_arm_run_mujoco(const bench_arm *a, const double *command, int samples,
-                          double rate, bench_sample *to)
+bool bench_arm_run_mujoco(const bench_arm *a, bench_board *board, void *context,
+                          int samples, double rate, bench_sample *to)
 {
     mjModel *model = load(a);
     mjData *data = mj_makeData(model);
-    const int steps = (int)lround(1 / (rate * STEP));
-    double volts = 0, felt = 0;
+    const double step = step_of(a);
+    const int steps = (int)lround(1 / (rate * step));
+    double volts = 0, felt = 0, pressed = 0;
     data->qpos[0] = data->qpos[1] = a->start;
     for (int k = 0; k < samples; k++) {
-        to[k] = (bench_sample){data->qpos[0], data->qvel[0], felt};
+        to[k] = (bench_sample){data->qpos[0], data->qvel[0], felt, pressed / steps};
+        const double command = board(context, k, to);
+        if (isnan(command)) {
+            break;
+        }
+        pressed = 0;
         for (int i = 0; i < steps; i++) {
             const double force = push(a, volts, model, data);
             mj_step(model, data);
-            volts += (command[k] - volts) * -expm1(-STEP / a->amplifier_lag);
-            felt += (force - felt) * -expm1(-STEP / a->force_lag);
+            pressed += force;
+            volts += (command - volts) * -expm1(-step / a->amplifier_lag);
+            felt += (force - felt) * -expm1(-step / a->force_lag);
         }
     }
     mj_deleteData(data);
@@ -149,10 +164,10 @@ bool bench_has_mujoco(void)
     return false;
 }
 
-bool bench_arm_run_mujoco(const bench_arm *a, const double *command, int samples,
-                          double rate, bench_sample *to)
+bool bench_arm_run_mujoco(const bench_arm *a, bench_board *board, void *context,
+                          int samples, double rate, bench_sample *to)
 {
-    (void)a, (void)command, (void)samples, (void)rate, (void)to;
+    (void)a, (void)board, (void)context, (void)samples, (void)rate, (void)to;
     return false;
 }
 #endif

@@ -6,7 +6,7 @@
 //     test_fit_coverage RECORDINGS [SETUP]
 #include "src/study/identify/identify.h"
 
-#include "tests/bench_arm.h"
+#include "tests/bench_sensors.h"
 #include "tests/rig_fixture.h"
 
 #define SPREAD 0.15 // share by which true values are drawn about the scenario's
@@ -62,15 +62,6 @@ enum { SET_UPS = sizeof set_ups / sizeof *set_ups };
 
 // --- recordings ------------------------------------------------------------------------
 
-static double normal(random_generator *random)
-{
-    double sum = -6;
-    for (int i = 0; i < 12; i++) {
-        sum += random_uniform(random);
-    }
-    return sum;
-}
-
 static FILE *open_recording(char file[64])
 {
     snprintf(file, 64, "/tmp/test_fit_coverage.XXXXXX");
@@ -95,13 +86,6 @@ static void record_by_lab(const scenario *s, char file[64])
     assert_int_equal(fclose(stream), 0);
 }
 
-// Volts as an A/D converter of 12 bits over 10 V either way gives them, with noise.
-static double converted(random_generator *random, double volts, double noise)
-{
-    const double step = 20.0 / 4096;
-    return step * round((volts + noise * normal(random)) / step);
-}
-
 // The bench of a scenario's parameters, with what no scenario holds.
 static bench_arm bench_of(const parameters *p, int links)
 {
@@ -124,14 +108,19 @@ static bench_arm bench_of(const parameters *p, int links)
                        .force_lag = 1.5e-3 / log(9)};
 }
 
-// What the sensors of a bench read: an encoder of 8000 counts, a tachometer of 2 V s/rad
-// with its ripple, and a resistor 30 kohm (f/1 N)^-0.75 with 40 kohm at 10 V.
+// Recorded commands.
+static double play(void *commands, int k, const bench_sample *to)
+{
+    (void)to;
+    return ((const double *)commands)[k];
+}
+
+// What the sensors of a bench read.
 static void record_bench(const set_up *u, const parameters *p, random_generator *random,
                          char file[64])
 {
     static double command[BENCH_SAMPLES];
     static bench_sample read[BENCH_SAMPLES];
-    const double gain = 1.002, count = 2 * M_PI / 8000;
     for (int k = 0; k < BENCH_SAMPLES; k++) {
         command[k] = k / 80 % 2 == 0 ? 1 : -1;
     }
@@ -140,21 +129,15 @@ static void record_bench(const set_up *u, const parameters *p, random_generator 
         bench_arm_run(&a, command, BENCH_SAMPLES, BENCH_RATE, read);
     } else {
         const bench_arm a = bench_of(p, 32);
-        assert_true(bench_arm_run_mujoco(&a, command, BENCH_SAMPLES, BENCH_RATE, read));
+        assert_true(
+            bench_arm_run_mujoco(&a, play, command, BENCH_SAMPLES, BENCH_RATE, read));
     }
 
     FILE *stream = open_recording(file);
     for (int k = 0; k < BENCH_SAMPLES; k++) {
-        const double ripple = 1 + 0.01 * sin(79 * read[k].angle);
-        const double speed =
-            converted(random, 2 * gain * ripple * read[k].velocity, 0.01) / 2;
-        const double felt = gain * read[k].force;
-        const double volts = felt > 0 ? 10 * 40 / (40 + 30 * pow(felt, -0.75)) : 0;
-        const double shown = converted(random, volts, 0.02);
-        const double force =
-            shown > 0 ? pow(30 * shown / (40 * (10 - shown)), 4.0 / 3) : 0;
+        const bench_reading shown = bench_read(&read[k], random);
         fprintf(stream, "%.17g,%g,%.17g,%.17g,%.17g\n", (double)k / BENCH_RATE,
-                command[k], count * round(read[k].angle / count), speed, force);
+                command[k], shown.angle, shown.velocity, shown.force);
     }
     assert_int_equal(fclose(stream), 0);
 }
