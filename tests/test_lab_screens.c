@@ -2,6 +2,8 @@
 // far that is from the reference, and which few values a run is about.
 #include "tests/explorer_on_screen.h"
 
+#include <unistd.h>
+
 static const int four_sizes[][2] = {{80, 24}, {100, 30}, {120, 40}, {200, 60}};
 
 // A text is in one of the first ten lines of the screen at every size.
@@ -95,6 +97,79 @@ TEST(the_run_as_opened_stays_beside_pinned_runs)
                 summary_with("corrected/first-impact", "").peak_force_N, 0);
 }
 
+// With five runs the strip has as many as there is room for, on each screen the present
+// one and the reference with their differences; tall ones have all.
+TEST(five_runs_stand_side_by_side)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":set arm.k2 4<Enter>b:set arm.k2 6<Enter>b:set motor.voltage 2<Enter>b"
+               ":set motor.voltage 3<Enter><End>");
+    const summary *m = &ex.model.session.run.summary,
+                  *r = &ex.model.session.other.summary;
+    assert_int_equal(model_run_count(&ex.model), 5);
+    assert_results(&ex, m->peak_force_N, m->contact_impulse_Ns, r->peak_force_N,
+                   r->contact_impulse_Ns);
+    assert_shows_at(&ex, 80, 24, "2 more: R");
+    for (EACH_TEXT(name, "as opened", "k2 4", "k2 6", "voltage 2", "voltage 3")) {
+        assert_shows_at(&ex, 120, 40, *name);
+        assert_shows_at(&ex, 200, 60, *name);
+    }
+
+    // the force keeps its rows, but for one that the smallest strip has for a third run
+    const int rows[] = {6, 7, 12, 12};
+    for (int i = 0; i < 4; i++) {
+        free(picture(&ex, four_sizes[i][0], four_sizes[i][1], GLYPHS_BRAILLE));
+        int height = 0;
+        for (int k = 0; k < ex.layout.hit_count; k++) {
+            const hit_area *h = &ex.layout.hits[k];
+            if (h->panel == PANEL_CURVES && h->part == PART_PANE && h->index == 0) {
+                height = h->area.height + 1; // and its title
+            }
+        }
+        assert_true(height >= rows[i]);
+    }
+}
+
+// A message of several lines covers what is below it and moves nothing.
+TEST(a_long_message_moves_nothing)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":seek 0.2<Enter>");
+    KEPT_TEXT(before) = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    memset(ex.input.message.text, 'x', 150);
+    memcpy(ex.input.message.text + 70, " y ", 3);
+    KEPT_TEXT(after) = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    const char *one = before, *other = after;
+    int different = 0;
+    for (int row = 0; row < 24; row++) {
+        const size_t length = strcspn(one, "\n"), wide = strcspn(other, "\n");
+        if (length != wide || strncmp(one, other, length) != 0) {
+            assert_in_range(row, 21, 22);
+            different++;
+        }
+        one += length + 1;
+        other += wide + 1;
+    }
+    assert_int_equal(different, 2);
+}
+
+// A click on a hint does what it says.
+TEST(hints_are_clicked)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":seek 0.2<Enter><Esc>");
+    free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
+    const int help = explorer_command_find("help");
+    for (int i = 0; i < ex.layout.hit_count; i++) {
+        const hit_area h = ex.layout.hits[i];
+        if (h.part == PART_HINT && h.index == help && h.area.width > 0) {
+            click_at(&ex, h.area.x + 1, h.area.y);
+            break;
+        }
+    }
+    assert_int_equal(ex.view.page, PANEL_HELP);
+}
+
 // Another scenario has a reference of its own; on return to a changed one that is back.
 TEST(every_scenario_has_its_own_reference)
 {
@@ -151,6 +226,9 @@ TEST_IN_FOLDER(data_and_maps_leave_the_results_in_place)
         explorer_follow(&ex);
     }
     assert_results(&ex, m.peak_force_N, m.contact_impulse_Ns, (double)NAN, (double)NAN);
+    for (EACH(size, four_sizes)) {
+        assert_shows_at(&ex, (*size)[0], (*size)[1], "6 of 6");
+    }
 
     // what a limit was asked for has a column
     press(&ex, ":sweep off<Enter>:solve voltage first_pulse_peak_N<lt>2<Enter>");
@@ -200,4 +278,51 @@ TEST(touches_and_releases_are_told_on_the_axis)
     // of a release where the flight behind it is long enough for the words
     press(&ex, "<End>");
     assert_shows_at(&ex, 200, 60, "off 0.4775");
+}
+
+// --- walks -----------------------------------------------------------------------------
+
+static int count_keys(const char *keys)
+{
+    int count = 0;
+    for (; *keys != '\0'; count++) {
+        const char *close = *keys == '<' ? strchr(keys, '>') : NULL;
+        keys = close != NULL ? close + 1 : keys + 1;
+    }
+    return count;
+}
+
+// The keys of what people come for, from the first screen on.
+TEST_IN_FOLDER(walks_take_few_keys)
+{
+    // half the voltage, and the difference
+    static const char halves[] = "<Enter>0.5<Enter>";
+    assert_true(count_keys(halves) <= 8);
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    const double before = peak(&ex);
+    press(&ex, halves);
+    assert_at_top(&ex, formatted("%+.3g", peak(&ex) - before));
+
+    // the picture of that, with its recipe
+    static const char saves[] = "s<Enter>";
+    assert_true(count_keys(saves) <= 6);
+    press(&ex, saves);
+    assert_int_equal(access("first-impact-voltage-0.5.png", R_OK), 0);
+    assert_int_equal(access("first-impact-voltage-0.5.yaml", R_OK), 0);
+
+    // the voltage for a peak below 2 N
+    static const char asks[] = ":so<Tab>vo<Tab> pea<Tab>N<lt>2<Enter>";
+    assert_true(count_keys(asks) <= 20);
+    press(&ex, asks);
+    check_close(ex.model.pinned.runs[ex.model.pinned.count - 1].run.summary.peak_force_N,
+                2, 1e-6);
+
+    // data under the run, their command played: besides the path
+    OPEN_EXPLORER(recorded, "compare/hybrid");
+    press(&recorded, ":save bench.csv<Enter>");
+    static const char searches[] = "<C-p>", plays[] = "<Down><Enter>";
+    assert_true(count_keys(searches) + count_keys(plays) <= 5);
+    press_text(&ex, "u%sbench.csv%s", searches, plays);
+    assert_int_equal(ex.model.session.effective.parameters.control.law, LAW_PLAYBACK);
+    assert_true(ex.model.measured.row_count > 0);
 }

@@ -82,6 +82,24 @@ TEST(nothing_is_cut_off_in_silence)
     assert_memory_equal(ex.input.prompt.text, "note abcdef", 11);
 }
 
+// A line of several hundred characters is carried out whole, and what it noted is kept
+// whole in a session.
+TEST_IN_FOLDER(long_lines_are_whole)
+{
+    enum { LONG = 600 };
+    char words[LONG + 1] = "";
+    for (int i = 0; i < LONG; i++) {
+        words[i] = (char)('a' + i % 26);
+    }
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press_text(&ex, ":note %s<Enter>:session save long<Enter>", words);
+    assert_string_equal(ex.model.notes[0].text, words);
+    OPEN_EXPLORER(next, "corrected/first-impact");
+    press(&next, ":session open long<Enter>");
+    assert_int_equal(next.model.note_count, 1);
+    assert_string_equal(next.model.notes[0].text, words);
+}
+
 // Lines come back by Up, the typed one by Down, and in the next visit, too; of many the
 // latest are kept.
 TEST_IN_FOLDER(lines_come_back)

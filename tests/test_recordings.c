@@ -331,7 +331,7 @@ static bool lies_right(const mutation *m, fault *f)
     SCOPED(trace_finish) trace t = {0};
     trace_init(&t, 1);
     if (csv_table_read(&table, recording_csv, 1, f) != STATUS_OK ||
-        measured_rows(&t, &table, m->known_rate, NULL, -1, f) != STATUS_OK) {
+        measured_rows(&t, &table, m->known_rate, NULL, -1, 0, f) != STATUS_OK) {
         return false;
     }
     size_t largest = 0;

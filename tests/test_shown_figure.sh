@@ -35,7 +35,7 @@ cmp plain.png elsewhere/plain.png || fail "the recipe's folder changes the pictu
 
 # changes from the start and in time, pushes, names, bounds, notes, hidden runs, zoom, views
 saved all.pdf 3 'set motor.voltage 0.5' branch 'seek 0.3' 'set motor.voltage 2' 'push 0.02' 'pin "zwei": <&> \' \
-    'set arm.k2 6' 'limit force 1.2' 'band force 0.3' 'zoom 0.2 0.6' 'note @0.4 a < b & "q"' \
+    'set arm.k2 6' 'limit force 1.2' 'band force 0.3' 'zoom 0.2 0.6' 'note @0.4 a < b & "q"' 'mark 0.35' 'seek 0.5' \
     'phase force gap' 'spectrum hub_velocity' 'trace force - 2*voltage' 'signal last_velocity 3' 'axis 0 3 1'
 
 # measured data, residuals, other runs
@@ -77,6 +77,8 @@ force = dict(curve("a.csv", "force[N]", "run 1 force"))
 run = [(x, y) for x, y in curve("a.csv", "force-2*voltage", "run 1 force-2*voltage") if x < 0.3 and x in force]
 assert run and all(abs(y - force[x] + 2 * 0.5) < 1e-12 for x, y in run)
 assert ["mark", 'a < b & "q"', "0.4", ""] in [r for r in csv.reader(open("a.csv"))]
+# so do the mark and the cursor
+assert {("mark", "0.35"), ("+0.15 s", "0.5")} <= {(r[1], r[2]) for r in csv.reader(open("a.csv")) if r[:1] == ["mark"]}
 # amplitudes begin at one period of the stretch
 assert min(x for x, _ in curve("s.csv", "hub_velocity[rad/s]", "run 1 hub_velocity")) > 0
 END

@@ -392,7 +392,7 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     }
     status code;
     if (column == NULL || (signal > 0 && csv_table_find(&table, column) >= 0)) {
-        code = measured_rows(t, &table, 0, column, signal, f);
+        code = measured_rows(t, &table, 0, column, signal, 0, f);
     } else {
         code = fault_set(
             f, STATUS_BAD_ARGUMENT,

@@ -335,15 +335,92 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
 
 // --- recorded tables ---
 
+// Marks the first of some rows, and of each column those with the least and the largest
+// value.
+static void mark_extremes(double *const columns[SIGNALS_AT_MOST], size_t first,
+                          size_t rows, bool *kept)
+{
+    memset(kept, 0, rows * sizeof *kept);
+    kept[0] = true;
+    for (int i = 1; i < SIGNALS_AT_MOST; i++) {
+        size_t least = 0, largest = 0;
+        for (size_t k = 1; k < rows && columns[i] != NULL; k++) {
+            const double value = columns[i][first + k];
+            if (!(columns[i][first + least] <= value)) {
+                least = k;
+            }
+            if (!(columns[i][first + largest] >= value)) {
+                largest = k;
+            }
+        }
+        kept[least] = kept[largest] = true;
+    }
+}
+
+// Appends the rows of a table's columns, or about `most` of them (0: all).
+static status add_measured(trace *t, double *const columns[SIGNALS_AT_MOST], size_t rows,
+                           size_t most)
+{
+    enum { MOST_GROUP = 4096 };
+    static const double none[1] = {0};
+    bool kept[MOST_GROUP];
+    size_t marks = 1, group = 1;
+    for (int i = 1; i < SIGNALS_AT_MOST; i++) {
+        marks += columns[i] != NULL ? 2 : 0;
+    }
+    if (most > 0 && rows > most) {
+        group = marks * rows / most + 1;
+    }
+    if (group > MOST_GROUP) {
+        group = MOST_GROUP;
+    }
+
+    for (size_t r = 0; r < rows; r++) {
+        if (r % group == 0) {
+            const size_t left = rows - r;
+            mark_extremes(columns, r, left < group ? left : group, kept);
+        }
+        if (!kept[r % group]) {
+            continue;
+        }
+
+        // a signal without a column has no value
+        double row[SIGNALS_AT_MOST];
+        sample measured;
+        for (int i = 0; i < SIGNALS_AT_MOST; i++) {
+            if (columns[i] != NULL) {
+                row[i] = columns[i][r];
+            } else {
+                row[i] = (double)NAN;
+            }
+        }
+        memcpy(&measured, row, sizeof measured);
+        TRY(trace_add_row(t, &measured, none, none));
+    }
+    return STATUS_OK;
+}
+
+// How many numbers some columns have besides the times.
+static size_t count_numbers(double *const columns[SIGNALS_AT_MOST], size_t rows)
+{
+    size_t numbers = 0;
+    for (int i = 1; i < SIGNALS_AT_MOST; i++) {
+        for (size_t r = 0; r < rows && columns[i] != NULL; r++) {
+            if (isfinite(columns[i][r])) {
+                numbers++;
+            }
+        }
+    }
+    return numbers;
+}
+
 status measured_rows(trace *t, csv_table *table, double rate, const char *column,
-                     int signal, fault *f)
+                     int signal, size_t most, fault *f)
 {
     assert(signal < signal_count);
 
     // the table's columns of time and of the signals it has
-    static const double none[1] = {0};
     double *columns[SIGNALS_AT_MOST] = {NULL};
-    size_t numbers = 0;
     sample_clock clock;
     status code = csv_table_times(table, NULL, rate, &clock, &columns[0], f);
     for (int i = 1; i < signal_count && code == STATUS_OK; i++) {
@@ -361,22 +438,10 @@ status measured_rows(trace *t, csv_table *table, double rate, const char *column
         }
     }
 
-    // a row for each of the table; a signal without a column has no value
-    for (size_t r = 0; r < table->rows && code == STATUS_OK; r++) {
-        double row[SIGNALS_AT_MOST];
-        sample measured;
-        for (int i = 0; i < SIGNALS_AT_MOST; i++) {
-            if (columns[i] != NULL) {
-                row[i] = columns[i][r];
-            } else {
-                row[i] = (double)NAN;
-            }
-            if (i > 0 && isfinite(row[i])) {
-                numbers++;
-            }
-        }
-        memcpy(&measured, row, sizeof measured);
-        code = trace_add_row(t, &measured, none, none);
+    size_t numbers = 0;
+    if (code == STATUS_OK) {
+        numbers = count_numbers(columns, table->rows);
+        code = add_measured(t, columns, table->rows, most);
     }
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
         free(columns[i]);

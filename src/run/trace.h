@@ -145,6 +145,8 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
 // headed as signals, in their units, or of `column` alone (not NULL), which stands for
 // `signal`. What was not measured is NaN. STATUS_BAD_ARGUMENT with the line in f: no
 // time, times that fall, no such column, a field that is no number, no number at all;
-// STATUS_NO_MEMORY.
+// STATUS_NO_MEMORY. Of a table with more than `most` rows (0: any) about so many are
+// appended: of every few those in which a column is least or largest, so that no peak is
+// lost.
 status measured_rows(trace *t, csv_table *table, double rate, const char *column,
-                     int signal, fault *f);
+                     int signal, size_t most, fault *f);

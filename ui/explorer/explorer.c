@@ -30,6 +30,7 @@ void explorer_keep_lines(explorer *ex)
 void explorer_finish(explorer *ex)
 {
     if (ex != NULL) {
+        data_reading_finish(ex->model.reading);
         state_finish(&ex->model, &ex->view);
         free(ex->input.copied);
         memset(ex, 0, sizeof *ex);
@@ -65,17 +66,20 @@ bool explorer_follow(explorer *ex)
     if (sweeps) {
         act_continue_sweep(&ex->model, &ex->input);
     }
+    const bool reads = ex->model.reading != NULL;
+    act_take_data(&ex->model, &ex->input, 0);
+    const bool has_data = reads && ex->model.reading == NULL;
     const bool more = session_follow(&ex->model.session);
     if (!sweeps && more && ex->model.session.computing == NULL) {
         act_tell_failed_run(&ex->model, &ex->input);
     }
-    return sweeps || more;
+    return sweeps || more || has_data;
 }
 
 bool explorer_is_busy(const explorer *ex)
 {
     return ex->view.playback.playing || ex->model.session.computing != NULL ||
-           !lab_sweep_is_done(&ex->model.sweep);
+           !lab_sweep_is_done(&ex->model.sweep) || ex->model.reading != NULL;
 }
 
 void explorer_draw(explorer *ex, screen *s)

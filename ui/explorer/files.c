@@ -1,4 +1,5 @@
 // The commands that read and write files: scenarios, figures, rows, screens, scenes.
+#include <glib.h>
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,11 +68,7 @@ static bool tell_file(explorer_input *input, bool done, const char *name)
 {
     char path[MESSAGE_TEXT / 2];
     char *whole = realpath(name, NULL);
-    if (whole != NULL) {
-        snprintf(path, sizeof path, "%s", whole);
-    } else {
-        snprintf(path, sizeof path, "%s", name);
-    }
+    g_strlcpy(path, whole != NULL ? whole : name, sizeof path);
     free(whole);
     if (done) {
         return act_tell(input, "saved %s", path);

@@ -308,6 +308,17 @@ static bool is_behind_page(const explorer_view *view, panel_id id)
            (id == PANEL_NONE || panel_place_of(id) < PLACE_PAGE);
 }
 
+// Carries out what a hint says: the first line of a key of its command.
+static void press_hint(explorer *ex, int command)
+{
+    char keys[64];
+    key_names_of(&ex->view.keys, explorer_command_table[command].name, keys, sizeof keys);
+    const int key = key_of_name(keys, strcspn(keys, " "));
+    if (key != 0) {
+        explorer_key(ex, key);
+    }
+}
+
 static void press(explorer *ex, pointer_event e)
 {
     hit_area hit = layout_hit(&ex->layout, e.x, e.y);
@@ -318,6 +329,10 @@ static void press(explorer *ex, pointer_event e)
         ex->grip.hit = (hit_area){.panel = ex->view.page};
         ex->view.page = PANEL_NONE;
         ex->view.scenarios.filtering = false;
+        return;
+    }
+    if (hit.part == PART_HINT) {
+        press_hint(ex, hit.index);
         return;
     }
     e.kind = POINTER_PRESS;

@@ -144,7 +144,7 @@ static void add_looks(const explorer_model *model, const explorer_view *view,
     }
     for (int i = 0; i < model->note_count; i++) {
         const note *n = &model->notes[i];
-        add_line(file, "note @%.17g %.200s", n->time, n->text);
+        add_line(file, "note @%.17g %s", n->time, n->text);
     }
 
     // colours, bounds, the mark
@@ -380,7 +380,9 @@ static void look_as_kept(explorer_model *model, explorer_view *view,
                          line_function *look, message_line *failure)
 {
     for (int i = 0; i < file->line_count; i++) {
-        if (!look(model, view, input, file->lines[i]) && failure->text[0] == '\0') {
+        const bool done = look(model, view, input, file->lines[i]) &&
+                          act_take_data(model, input, HUGE_VAL);
+        if (!done && failure->text[0] == '\0') {
             *failure = input->message;
         }
     }

@@ -400,11 +400,36 @@ static void take_runs(shown_recipe *r, const pane *only)
     r->data = only == NULL && model->measured.row_count > 0;
 }
 
-// The panes over time, with the notes.
+// A line at an instant [s]; the first one begins the list of marks.
+static void write_mark(const shown_recipe *r, bool *begun, double time, const char *label)
+{
+    write_value(r, *begun ? "  - {at: " : "marks:\n  - {at: ", time);
+    write_plain(r, ", label: ", label);
+    fputs("}\n", r->stream);
+    *begun = true;
+}
+
+// The notes, and the mark with the cursor that is compared with it.
+static void write_marks(const shown_recipe *r)
+{
+    const explorer_model *model = r->model;
+    const time_mark *mark = &r->view->mark;
+    bool begun = false;
+    for (int i = 0; i < model->note_count; i++) {
+        write_mark(r, &begun, model->notes[i].time, model->notes[i].text);
+    }
+    if (mark->set) {
+        char after[48];
+        snprintf(after, sizeof after, "%+.5g s", model->session.now - mark->time);
+        write_mark(r, &begun, mark->time, "mark");
+        write_mark(r, &begun, model->session.now, after);
+    }
+}
+
+// The panes over time, with the notes and marks.
 static status write_over_time(shown_recipe *r, const int *panes, int count, double width,
                               fault *f)
 {
-    const explorer_model *model = r->model;
     const time_window *w = &r->view->window;
     take_runs(r, NULL);
     write_texts(r, true, width);
@@ -417,12 +442,7 @@ static status write_over_time(shown_recipe *r, const int *panes, int count, doub
         write_pair(r, "x: {range: [", w->from, w->to);
         fputs("}\n", r->stream);
     }
-    for (int i = 0; i < model->note_count; i++) {
-        const note *n = &model->notes[i];
-        write_value(r, i == 0 ? "marks:\n  - {at: " : "  - {at: ", n->time);
-        write_plain(r, ", label: ", n->text);
-        fputs("}\n", r->stream);
-    }
+    write_marks(r);
     return STATUS_OK;
 }
 

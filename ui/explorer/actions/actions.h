@@ -73,6 +73,11 @@ bool act_metric(explorer_model *model, explorer_input *input, const char *argume
 
 // measured data (measured_actions.c)
 bool act_data(explorer_model *model, explorer_input *input, const char *argument);
+// Takes measured data that were being read, once they are there; waits at most `patience`
+// [s] for them.
+bool act_take_data(explorer_model *model, explorer_input *input, double patience);
+// Waits for the thread of a reading and frees it; NULL is allowed.
+void data_reading_finish(data_reading *r);
 bool act_reload(explorer_model *model, explorer_input *input);
 bool act_identify(explorer_model *model, explorer_input *input, const char *argument);
 

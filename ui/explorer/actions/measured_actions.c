@@ -5,35 +5,56 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <glib.h>
+
 #include "src/run/trace.h"
 #include "src/study/identify/identify.h"
 
 // --- under the run ---------------------------------------------------------------------
 
-// Reads a table's columns and lays them under the run in the place of those there were,
-// not shifted yet.
-static status read_measured(explorer_model *model, const char *path, fault *f)
+// A file that is read in a thread of its own, as that may take seconds.
+struct data_reading {
+    GThread *thread;
+    int done; // set when all below is there
+    char path[LINE_TEXT];
+    double rate;     // by which numbers of samples are divided [1/s]
+    double shift;    // by which the rows are to lie later [s], NaN: aligned
+    bool plays;      // the run is to play their command
+    trace rows;      // what was read
+    size_t in_table; // rows of the file
+    char digest[SHA256_TEXT];
+    status code;
+    fault fault;
+};
+
+// The thread: reads the table's columns.
+static gpointer read_table(gpointer of)
 {
-    trace fresh = {0};
+    enum { MOST_ROWS = 200000 }; // kept
+    data_reading *r = of;
     csv_table table = {0};
-    trace_init(&fresh, 1);
-    status code = csv_table_read(&table, path, 1, f);
-    if (code == STATUS_OK) {
-        const double rate = model->session.effective.parameters.control.rate;
-        code = measured_rows(&fresh, &table, rate, NULL, -1, f);
+    trace_init(&r->rows, 1);
+    r->code = csv_table_read(&table, r->path, 1, &r->fault);
+    if (r->code == STATUS_OK) {
+        r->code =
+            measured_rows(&r->rows, &table, r->rate, NULL, -1, MOST_ROWS, &r->fault);
+        r->in_table = table.rows;
     }
     csv_table_finish(&table);
-    if (code != STATUS_OK) {
-        trace_finish(&fresh);
-        return code;
+    if (r->code == STATUS_OK) {
+        outside_file_digest(r->path, r->digest);
     }
-    trace_finish(&model->measured);
-    model->measured = fresh;
-    model->measured_shift = 0;
-    model->measured_id++;
-    snprintf(model->measured_file, sizeof model->measured_file, "%s", path);
-    outside_file_digest(path, model->measured_digest);
-    return STATUS_OK;
+    g_atomic_int_set(&r->done, 1);
+    return NULL;
+}
+
+void data_reading_finish(data_reading *r)
+{
+    if (r != NULL) {
+        g_thread_join(r->thread);
+        trace_finish(&r->rows);
+        g_free(r);
+    }
 }
 
 // Whether the recording had another command than the run, on average by more than a
@@ -105,6 +126,86 @@ static bool cut_play(char *path)
     return plays;
 }
 
+// Says what was read, and what is to be known of it.
+static bool tell_data(const explorer_model *model, explorer_input *input, size_t in_table,
+                      bool laid)
+{
+    const size_t rows = model->measured.row_count;
+    char kept[80] = "";
+    if (rows < in_table) {
+        snprintf(kept, sizeof kept, ", of which %zu with all peaks are kept", rows);
+    }
+    if (!laid) {
+        return act_warn(input,
+                        "%zu rows%s, as they are: no force in both that shows a touch",
+                        in_table, kept);
+    }
+    const char *advice = ":data off takes them away";
+    if (commands_differ(model)) {
+        advice = "their command was another than the run's: 'play' behind the file lets "
+                 "it play theirs";
+    }
+    return act_tell(input, "%zu rows%s, shifted by %.6g s; %s", in_table, kept,
+                    model->measured_shift, advice);
+}
+
+// Lays what was read under the run, in the place of the data there were.
+static bool take_data(explorer_model *model, explorer_input *input, data_reading *r)
+{
+    if (r->code != STATUS_OK) {
+        input->fault = r->fault;
+        return act_succeeded(input, r->code);
+    }
+    trace_finish(&model->measured);
+    model->measured = r->rows;
+    r->rows = (trace){0};
+    model->measured_shift = 0;
+    model->measured_id++;
+    snprintf(model->measured_file, sizeof model->measured_file, "%s", r->path);
+    memcpy(model->measured_digest, r->digest, sizeof r->digest);
+    if (r->plays) {
+        return act_succeeded(input, play_measured(model, &input->fault)) &&
+               act_tell(input, "%zu rows, whose command the run plays on their clock",
+                        r->in_table);
+    }
+    const bool laid = model_lay_data(model, r->shift);
+    return tell_data(model, input, r->in_table, laid);
+}
+
+bool act_take_data(explorer_model *model, explorer_input *input, double patience)
+{
+    enum { STEP = 1000 }; // [us]
+    data_reading *r = model->reading;
+    for (double waited = 0; r != NULL && waited < patience; waited += 1e-6 * STEP) {
+        if (g_atomic_int_get(&r->done)) {
+            break;
+        }
+        g_usleep(STEP);
+    }
+    if (r == NULL || !g_atomic_int_get(&r->done)) {
+        return true;
+    }
+    model->reading = NULL;
+    const bool done = take_data(model, input, r);
+    data_reading_finish(r);
+    return done;
+}
+
+// Begins to read a file, and takes it if that is done soon.
+static bool read_data(explorer_model *model, explorer_input *input, const char *path,
+                      double shift, bool plays)
+{
+    data_reading *r = g_new0(data_reading, 1);
+    *r = (data_reading){.shift = shift,
+                        .plays = plays,
+                        .rate = model->session.effective.parameters.control.rate};
+    g_strlcpy(r->path, path, sizeof r->path);
+    r->thread = g_thread_new("data", read_table, r);
+    model->reading = r;
+    act_tell(input, "reading %.200s; the lab goes on meanwhile", path);
+    return act_take_data(model, input, model->session.patience);
+}
+
 bool act_reload(explorer_model *model, explorer_input *input)
 {
     if (model->measured.row_count == 0) {
@@ -113,12 +214,8 @@ bool act_reload(explorer_model *model, explorer_input *input)
     char path[LINE_TEXT];
     snprintf(path, sizeof path, "%s", model->measured_file);
     const double shift = model->measured_aligned ? (double)NAN : model->measured_shift;
-    if (!act_succeeded(input, read_measured(model, path, &input->fault))) {
-        return false;
-    }
-    model_lay_data(model, shift);
-    return act_tell(input, "%zu rows of %.200s, read again", model->measured.row_count,
-                    path);
+    act_take_data(model, input, HUGE_VAL);
+    return read_data(model, input, path, shift, false);
 }
 
 // Measured columns under the run, shifted as FILE@SHIFT says, else to the run's first
@@ -129,6 +226,9 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
         return act_refuse(
             input, "data takes a table with a column time, such as bench.csv, or off");
     }
+
+    // one after the other
+    act_take_data(model, input, HUGE_VAL);
     if (strcmp(argument, "off") == 0) {
         trace_finish(&model->measured);
         model->measured = (trace){0};
@@ -150,29 +250,7 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
         }
         *at = '\0';
     }
-    if (!act_succeeded(input, read_measured(model, path, &input->fault))) {
-        return false;
-    }
-
-    const size_t rows = model->measured.row_count;
-    if (plays) {
-        return act_succeeded(input, play_measured(model, &input->fault)) &&
-               act_tell(input, "%zu rows, whose command the run plays on their clock",
-                        rows);
-    }
-    if (!model_lay_data(model, shift)) {
-        return act_warn(input,
-                        "%zu rows, as they are: no force in both that shows a touch",
-                        rows);
-    }
-    if (commands_differ(model)) {
-        return act_tell(input,
-                        "%zu rows, shifted by %.6g s; their command was another than the "
-                        "run's: 'play' behind the file lets it play theirs",
-                        rows, model->measured_shift);
-    }
-    return act_tell(input, "%zu rows, shifted by %.6g s; :data off takes them away", rows,
-                    model->measured_shift);
+    return read_data(model, input, path, shift, plays);
 }
 
 // --- identification --------------------------------------------------------------------

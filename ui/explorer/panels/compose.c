@@ -71,6 +71,7 @@ static void draw_title(const explorer_model *model, screen *s)
 // A part of a bar.
 typedef struct bar_item {
     char text[96]; // "" for none
+    int x, width;  // where it was drawn, no width if nowhere [cells]
     int rank;      // 0 first: where not all items fit, those of the highest ranks go
 } bar_item;
 
@@ -92,6 +93,7 @@ static void bar_add(bar *b, int rank, const char *format, ...)
     assert(b->count < BAR_ITEMS && rank < BAR_ITEMS);
     bar_item *item = &b->items[b->count++];
     item->rank = rank;
+    item->x = item->width = 0;
     va_list list;
     va_start(list, format);
     vsnprintf(item->text, sizeof item->text, format, list);
@@ -106,9 +108,9 @@ static void blank_row(screen *s, int y)
     }
 }
 
-// Draws a bar into a row: the items of the lowest ranks as far as `room` cells have room
-// for them, those of ranks below `always` in any case.
-static void draw_bar(screen *s, int y, int room, int always, ink colour, const bar *b)
+// Draws a bar into a row and notes where its items are: the items of the lowest ranks as
+// far as `room` cells have room for them, those of ranks below `always` in any case.
+static void draw_bar(screen *s, int y, int room, int always, ink colour, bar *b)
 {
     // which ones, by their ranks
     bool shown[BAR_ITEMS] = {false};
@@ -129,7 +131,10 @@ static void draw_bar(screen *s, int y, int room, int always, ink colour, const b
     int x = 1;
     for (int i = 0; i < b->count; i++) {
         if (shown[i]) {
-            x += 2 + screen_text(s, x, y, s->width - x, colour, b->items[i].text);
+            b->items[i].x = x;
+            b->items[i].width =
+                screen_text(s, x, y, s->width - x, colour, b->items[i].text);
+            x += 2 + b->items[i].width;
         }
     }
 }
@@ -196,6 +201,9 @@ static bar status_bar(const explorer_model *model, const explorer_view *view)
         bar_add(&b, 2, "computing %.1f of %g s (Esc stops)", session_end(e),
                 p->run.duration);
     }
+    if (model->reading != NULL) {
+        bar_add(&b, 2, "reading data");
+    }
     if (e->run.summary.inaccurate) {
         bar_add(&b, 1, "inaccurate");
     }
@@ -221,7 +229,7 @@ static void draw_status(const explorer_model *model, const explorer_view *view, 
                         int y)
 {
     enum { ALWAYS = 2 }; // ranks
-    const bar b = status_bar(model, view);
+    bar b = status_bar(model, view);
     draw_bar(s, y, s->width, ALWAYS, INK_TEXT, &b);
 
     // what went wrong colours the bar
@@ -329,8 +337,8 @@ static void write_brief_keys(const key_bindings *bindings, const char *command,
     }
 }
 
-// What the most wanted keys do, as many as there is room for.
-static void draw_hints(const explorer_view *view, screen *s)
+// What the most wanted keys do, as many as there is room for; a click does it, too.
+static void draw_hints(const explorer_view *view, layout *lay, screen *s)
 {
     static const struct {
         const char *command, *does;
@@ -343,19 +351,27 @@ static void draw_hints(const explorer_view *view, screen *s)
                  {"quit", "quit", 2}};
     enum { HINTS = sizeof hints / sizeof hints[0] };
     bar b = {.count = 0};
+    int of_item[HINTS];
     for (int i = 0; i < HINTS; i++) {
         char keys[64];
         write_brief_keys(&view->keys, hints[i].command, keys);
         if (keys[0] != '\0') {
+            of_item[b.count] = explorer_command_find(hints[i].command);
             bar_add(&b, hints[i].rank, "%.20s %s", keys, hints[i].does);
         }
     }
-    draw_bar(s, s->height - 2, s->width - 1, 0, INK_DIM, &b);
+    const int y = s->height - 2;
+    draw_bar(s, y, s->width - 1, 0, INK_DIM, &b);
+    for (int i = 0; i < b.count; i++) {
+        const area place = {b.items[i].x, y, b.items[i].width, 1};
+        layout_add_hit(lay, (hit_area){PANEL_NONE, PART_HINT, of_item[i], place});
+    }
 }
 
 // Draws the prompt, the message or hints in the rows above the status, which stays where
 // it is, and returns how many it took.
-static int draw_bottom(const explorer_view *view, const explorer_input *input, screen *s)
+static int draw_bottom(const explorer_view *view, const explorer_input *input,
+                       layout *lay, screen *s)
 {
     if (input->prompt.open) {
         return draw_prompt(input, s);
@@ -365,7 +381,7 @@ static int draw_bottom(const explorer_view *view, const explorer_input *input, s
         return 1;
     }
     if (input->message.text[0] == '\0') {
-        draw_hints(view, s);
+        draw_hints(view, lay, s);
         return 1;
     }
 
@@ -596,7 +612,7 @@ void compose_screen(const explorer_model *model, const explorer_view *view,
     if (view->page != PANEL_NONE) {
         panel_draw(view->page, model, view, lay, s, body);
     }
-    const int rows = draw_bottom(view, input, s);
+    const int rows = draw_bottom(view, input, lay, s);
     draw_status(model, view, s, s->height - 1);
     if (palette_shows(&input->prompt)) {
         const area above = {0, 1, s->width, s->height - 2 - rows};

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { FEWEST_CURVES = 14 }; // rows of curves from which on there are lanes
+enum { FEWEST_CURVES = 20 }; // rows that lanes leave to the curves and their axis
 
 // Whether only a part of the run is visible.
 static bool has_map(const explorer_view *view)
@@ -29,7 +29,7 @@ int lanes_rows(const explorer_model *model, const explorer_view *view, int heigh
     }
 
     // what the curves leave to them
-    const int spare = height > FEWEST_CURVES ? (height - FEWEST_CURVES) / 2 : 0;
+    const int spare = height > FEWEST_CURVES ? height - FEWEST_CURVES : 0;
     return spare < wanted ? spare : wanted;
 }
 

@@ -79,7 +79,8 @@ typedef enum hit_part {
     PART_TIME_AXIS, // below curves
     PART_VIEW,      // a pane that is not over time; index: the pane
     PART_LANES,     // bands below that
-    PART_MAP        // of the whole run
+    PART_MAP,       // of the whole run
+    PART_HINT       // of no panel; index: the command that a click carries out
 } hit_part;
 
 // A part of the screen that the mouse can point at.

@@ -8,7 +8,7 @@
 
 #include "src/base/words.h"
 
-enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
+enum { LINE_TEXT = 1024 }; // bytes of a command, a filter or a name
 
 // Cuts the first word off a text, which one of `ends` ends; returns what follows, from
 // the next word on.

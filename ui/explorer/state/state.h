@@ -85,6 +85,8 @@ typedef struct screen_size {
 } screen_size;
 
 // The model: the runs, what was done to them, and what follows from them.
+typedef struct data_reading data_reading; // of a file that is being read
+
 typedef struct explorer_model {
     session session; // the present run, its changes and the cursor
     reference_run opened_run;
@@ -100,6 +102,7 @@ typedef struct explorer_model {
     char last_law[LINE_TEXT]; // the law that was switched off last, "" for none
 
     // measured data
+    data_reading *reading;   // of the next ones, NULL: none
     run_difference residual; // of the measured data from the run
     trace measured;          // data laid under the run, no rows: none
     char measured_file[LINE_TEXT];
