@@ -129,7 +129,7 @@ TEST(a_map_gives_what_single_runs_give)
     press_warns(&ex, ":sweep arm.k2=1:2:40 motor.voltage=1:2:40<Enter>", "too many");
     press_warns(&ex, ":sweep arm.k2=1:2:4 arm.k2=1:2:4<Enter>", "different");
     press_warns(&ex, ":sweep arm.k2=1:2:4 motor.voltage<Enter>", "for a map two");
-    press(&ex, "M<Esc>");
+    press(&ex, "<Esc>");
     assert_false(lab_sweep_is_on(m));
 }
 

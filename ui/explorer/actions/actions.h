@@ -93,28 +93,25 @@ bool act_axis(const explorer_model *model, explorer_view *view, explorer_input *
 // panes of curves (pane_actions.c)
 bool act_focus(explorer_view *view, explorer_input *input);
 bool act_alone(explorer_view *view);
+// Shows a pane of the user's of a kind, of the signals of an argument.
+bool act_show_pane(explorer_model *model, explorer_view *view, explorer_input *input,
+                   const char *argument, pane_view kind);
 bool act_trace(explorer_model *model, explorer_view *view, explorer_input *input,
                const char *argument);
 bool act_signal(explorer_view *view, explorer_input *input, const char *argument);
 bool act_limit(explorer_model *model, explorer_input *input, const char *argument);
 bool act_band(explorer_model *model, explorer_input *input, const char *argument);
-bool act_phase(explorer_model *model, explorer_view *view, explorer_input *input,
-               const char *argument);
-bool act_residual(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const char *argument);
-bool act_spectrum(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const char *argument);
 bool act_panes(explorer_view *view, explorer_input *input, const char *argument);
 
 // looking (view_actions.c)
 bool act_select(explorer_model *model, explorer_view *view, const char *argument);
 bool act_fold(explorer_view *view, explorer_input *input, const char *argument);
 bool act_changes(const explorer_model *model, explorer_view *view);
-bool act_runs(explorer_view *view);
-bool act_compare(explorer_view *view);
-bool act_explain(explorer_view *view);
-bool act_why(const explorer_model *model, explorer_view *view, explorer_input *input);
-bool act_poles(explorer_view *view);
+// Opens a page at its beginning, with a filter ("": none), or closes it.
+bool act_page(explorer_view *view, panel_id page, const char *filter);
+// Makes a choice of how the lab looks, of a command and a word of look_choices.
+bool act_look(explorer_view *view, explorer_input *input, const char *command,
+              const char *argument);
 bool act_mark(const explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
 bool act_note(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -122,17 +119,11 @@ bool act_note(explorer_model *model, explorer_view *view, explorer_input *input,
 bool act_notes(explorer_view *view);
 bool act_side(const explorer_model *model, explorer_view *view);
 bool act_filter(const explorer_model *model, explorer_view *view, const char *argument);
-bool act_info(explorer_view *view);
 bool act_statistics(explorer_view *view);
 bool act_palette(explorer_view *view, explorer_input *input, const char *argument);
-bool act_glyphs(explorer_view *view, explorer_input *input, const char *argument);
-bool act_theme(explorer_view *view, explorer_input *input, const char *argument);
-bool act_pixels(explorer_view *view, explorer_input *input, const char *argument);
 bool act_rate(explorer_view *view, explorer_input *input, const char *argument);
 bool act_bending(explorer_view *view, explorer_input *input, const char *argument);
-bool act_mouse(explorer_view *view, explorer_input *input, const char *argument);
 bool act_redraw(explorer_view *view);
-bool act_help(explorer_view *view, const char *argument);
 bool act_quit_now(explorer_input *input);
 
 // scenarios and lessons (scenario_actions.c)

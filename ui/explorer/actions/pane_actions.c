@@ -126,18 +126,24 @@ static bool read_signals(explorer_model *model, const explorer_view *view,
     return true;
 }
 
-// Shows a pane of the user's beside those there are, of the signals of an argument;
-// `refusal` says how many it takes.
-static bool show_own(explorer_model *model, explorer_view *view, explorer_input *input,
-                     const char *argument, pane_view kind, int least, int most,
-                     const char *refusal)
+bool act_show_pane(explorer_model *model, explorer_view *view, explorer_input *input,
+                   const char *argument, pane_view kind)
 {
+    static const struct {
+        int least, most; // signals
+        const char *takes;
+    } kinds[] = {
+        [VIEW_TIME] = {1, PANE_SIGNALS,
+                       "trace takes a number from 1 to 9 or names of signals"},
+        [VIEW_PHASE] = {2, 2, "phase takes two signals: what goes up, and what across"},
+        [VIEW_RESIDUAL] = {1, PANE_SIGNALS, "residual takes signals that were measured"},
+        [VIEW_SPECTRUM] = {1, 1, "spectrum takes one signal"}};
     pane own = {.view = kind};
     if (!read_signals(model, view, input, argument, &own)) {
         return false;
     }
-    if (own.count < least || own.count > most) {
-        return act_refuse(input, "%s", refusal);
+    if (own.count < kinds[kind].least || own.count > kinds[kind].most) {
+        return act_refuse(input, "%s", kinds[kind].takes);
     }
     const int index = panes_add(&view->panes, &own);
     return act_tell(input, "pane %d: :trace %d hides it", index + 1, index + 1);
@@ -167,29 +173,7 @@ bool act_trace(explorer_model *model, explorer_view *view, explorer_input *input
         return true;
     }
 
-    return show_own(model, view, input, argument, VIEW_TIME, 1, PANE_SIGNALS,
-                    "trace takes a number from 1 to 9 or names of signals");
-}
-
-bool act_residual(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const char *argument)
-{
-    return show_own(model, view, input, argument, VIEW_RESIDUAL, 1, PANE_SIGNALS,
-                    "residual takes signals that were measured");
-}
-
-bool act_phase(explorer_model *model, explorer_view *view, explorer_input *input,
-               const char *argument)
-{
-    return show_own(model, view, input, argument, VIEW_PHASE, 2, 2,
-                    "phase takes two signals: what goes up, and what across");
-}
-
-bool act_spectrum(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const char *argument)
-{
-    return show_own(model, view, input, argument, VIEW_SPECTRUM, 1, 1,
-                    "spectrum takes one signal");
+    return act_show_pane(model, view, input, argument, VIEW_TIME);
 }
 
 // Shows the panes of these numbers and no others.

@@ -514,33 +514,6 @@ bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input
     return done;
 }
 
-// Whether a metric is worth showing: it is no time of computing, and one of the runs has
-// it (or there is none yet).
-static bool is_shown_metric(const lab_sweep *sweep, int metric)
-{
-    if (summary_table[metric].timing) {
-        return false;
-    }
-    for (int i = 0; i < sweep->count; i++) {
-        if (isfinite(lab_sweep_metric(sweep, i, metric))) {
-            return true;
-        }
-    }
-    return sweep->count == 0;
-}
-
-// The metric after the present one.
-static int next_metric(const lab_sweep *sweep)
-{
-    for (int step = 1; step <= summary_count; step++) {
-        const int next = (sweep->metric + step) % summary_count;
-        if (is_shown_metric(sweep, next)) {
-            return next;
-        }
-    }
-    return sweep->metric;
-}
-
 static bool refuse_metric(explorer_input *input, const char *name)
 {
     const char *near = summary_suggest(name);
@@ -571,12 +544,7 @@ bool act_quantity(const explorer_model *model, explorer_input *input,
 bool act_metric(explorer_model *model, explorer_input *input, const char *argument)
 {
     lab_sweep *sweep = &model->sweep;
-    int metric;
-    if (argument[0] == '\0') {
-        metric = next_metric(sweep);
-    } else {
-        metric = summary_find_begun(argument);
-    }
+    const int metric = summary_find_begun(argument);
     if (metric < 0) {
         return refuse_metric(input, argument);
     }

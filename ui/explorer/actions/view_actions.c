@@ -232,8 +232,7 @@ bool act_statistics(explorer_view *view)
     return true;
 }
 
-// Opens a page at its beginning, or closes it.
-static bool toggle_page(explorer_view *view, panel_id page)
+bool act_page(explorer_view *view, panel_id page, const char *filter)
 {
     if (view->page == page) {
         view->page = PANEL_NONE;
@@ -241,45 +240,8 @@ static bool toggle_page(explorer_view *view, panel_id page)
         view->page = page;
     }
     view->drawn.scroll[page] = 0;
-    view->filters.text[page][0] = '\0';
+    snprintf(view->filters.text[page], LINE_TEXT, "%s", filter);
     return true;
-}
-
-bool act_help(explorer_view *view, const char *argument)
-{
-    toggle_page(view, PANEL_HELP);
-    snprintf(view->filters.text[PANEL_HELP], LINE_TEXT, "%s", argument);
-    return true;
-}
-
-bool act_info(explorer_view *view)
-{
-    return toggle_page(view, PANEL_INFO);
-}
-
-bool act_explain(explorer_view *view)
-{
-    return toggle_page(view, PANEL_EXPLAIN);
-}
-
-bool act_poles(explorer_view *view)
-{
-    return toggle_page(view, PANEL_POLES);
-}
-
-bool act_compare(explorer_view *view)
-{
-    return toggle_page(view, PANEL_COMPARISON);
-}
-
-bool act_runs(explorer_view *view)
-{
-    return toggle_page(view, PANEL_RUN_LIST);
-}
-
-bool act_why(const explorer_model *model, explorer_view *view, explorer_input *input)
-{
-    return act_need_whole_run(model, input) && toggle_page(view, PANEL_WHY);
 }
 
 void act_drop_note(explorer_model *model, explorer_view *view, int index)
@@ -353,19 +315,18 @@ bool act_note(explorer_model *model, explorer_view *view, explorer_input *input,
 bool act_notes(explorer_view *view)
 {
     view->note = 0;
-    return toggle_page(view, PANEL_NOTES);
+    return act_page(view, PANEL_NOTES, "");
 }
 
 bool act_changes(const explorer_model *model, explorer_view *view)
 {
     const int last = model->session.input_count - 1;
     view->change = last > 0 ? last : 0;
-    return toggle_page(view, PANEL_CHANGES);
+    return act_page(view, PANEL_CHANGES, "");
 }
 
-// Makes the choice that is named.
-static bool choose(explorer_view *view, explorer_input *input, const char *command,
-                   const char *argument)
+bool act_look(explorer_view *view, explorer_input *input, const char *command,
+              const char *argument)
 {
     const look_choice *c = look_choice_of(command);
     char all[128] = "";
@@ -390,26 +351,6 @@ static bool choose(explorer_view *view, explorer_input *input, const char *comma
         says = c->says[named];
     }
     return says == NULL || act_tell(input, says, c->words[named]);
-}
-
-bool act_theme(explorer_view *view, explorer_input *input, const char *argument)
-{
-    return choose(view, input, "theme", argument);
-}
-
-bool act_glyphs(explorer_view *view, explorer_input *input, const char *argument)
-{
-    return choose(view, input, "glyphs", argument);
-}
-
-bool act_pixels(explorer_view *view, explorer_input *input, const char *argument)
-{
-    return choose(view, input, "pixels", argument);
-}
-
-bool act_mouse(explorer_view *view, explorer_input *input, const char *argument)
-{
-    return choose(view, input, "mouse", argument);
 }
 
 bool act_rate(explorer_view *view, explorer_input *input, const char *argument)

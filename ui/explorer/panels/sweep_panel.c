@@ -290,7 +290,7 @@ static void draw_sweep(const explorer_model *model, const explorer_view *view,
 
     // the metric, then what it comes to
     const area inside = area_inside(a), below = area_below(inside, 1);
-    area_print(s, inside, INK_DIM, "%s (M: next)", summary_table[sweep->metric].label);
+    area_print(s, inside, INK_DIM, "%s (:metric)", summary_table[sweep->metric].label);
     if (lab_sweep_is_map(sweep)) {
         draw_sweep_map(model, lay, s, below);
         return;

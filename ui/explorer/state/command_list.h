@@ -63,7 +63,7 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "pin this run and make another beside it")                                         \
     X("", "pin", act_pin(model, input, argument), "", "[NAME]",                          \
       "the same under a name; up to seven runs are kept")                                \
-    X("", "runs", act_runs(view), "R", "",                                               \
+    X("", "runs", act_page(view, PANEL_RUN_LIST, ""), "R", "",                           \
       "the pinned runs: open, hide, rename, drop, compare")                              \
     X("", "take", act_take(model, view, input, argument), "", "N",                       \
       "go on with the N-th pinned run; this one is pinned")                              \
@@ -84,18 +84,19 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "runs with other values: curves and a metric, of two parameters a map")            \
     X("", "solve", act_solve(model, input, argument), "", "PATH[=A:B] QUANTITY<VALUE",   \
       "limit of a value for a condition: it is pinned")                                  \
-    X("", "metric", act_metric(model, input, argument), "M", "[QUANTITY]",               \
-      "what the sweep compares by; alone: the next one")                                 \
+    X("", "metric", act_metric(model, input, argument), "", "QUANTITY",                  \
+      "what the sweep compares by")                                                      \
     X("", "quantity", act_quantity(model, input, argument), "", "QUANTITY",              \
       "a number of this run's summary, and what it is")                                  \
     X("", "stop", act_stop(model, input), "", "",                                        \
       "compute no further; Space at its end goes on")                                    \
-    X("", "compare", act_compare(view), "c", "", "both runs in numbers")                 \
-    X("", "explain", act_explain(view), "F1", "",                                        \
+    X("", "compare", act_page(view, PANEL_COMPARISON, ""), "c", "",                      \
+      "both runs in numbers")                                                            \
+    X("", "explain", act_page(view, PANEL_EXPLAIN, ""), "F1", "",                        \
       "what is selected, in focus and at the cursor")                                    \
-    X("", "why", act_why(model, view, input), "W", "",                                   \
-      "the run's course, from its events and energies")                                  \
-    X("", "poles", act_poles(view), "", "",                                              \
+    X("", "why", (act_need_whole_run(model, input) && act_page(view, PANEL_WHY, "")),    \
+      "W", "", "the run's course, from its events and energies")                         \
+    X("", "poles", act_page(view, PANEL_POLES, ""), "", "",                              \
       "natural frequencies and damping near rest, free and on the wall")                 \
     X("", "data", act_data(model, input, argument), "", "FILE.csv[@SHIFT]|off [play]",   \
       "measured columns, aligned at the first contact; play: with their command")        \
@@ -113,7 +114,7 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "all parameters, values, statistics")                                              \
     X("", "filter", act_filter(model, view, argument), "/", "[WORDS]",                   \
       "of parameters, values or help: those with all words")                             \
-    X("", "info", act_info(view), "d", "", "what the scenario is about")                 \
+    X("", "info", act_page(view, PANEL_INFO, ""), "d", "", "what the scenario is about") \
     X("Curves and their axes", "zoom", act_zoom(model, view, input, argument),           \
       "z:in Z:out 0:all", "in|out|all|FROM TO", "time axis round the cursor")            \
     X("", "pan", act_pan(model, view, input, argument),                                  \
@@ -135,12 +136,12 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "a bound drawn across the panes of a signal")                                      \
     X("", "band", act_band(model, input, argument), "", "SIGNAL TOLERANCE|off",          \
       "a band round the baseline's curve, and who leaves it")                            \
-    X("", "phase", act_phase(model, view, input, argument), "", "SIGNAL SIGNAL",         \
-      "a pane of one signal over another: phase gap force")                              \
-    X("", "residual", act_residual(model, view, input, argument), "", "SIGNAL...",       \
-      "a pane of :data minus the run")                                                   \
-    X("", "spectrum", act_spectrum(model, view, input, argument), "", "SIGNAL",          \
-      "a pane of its amplitudes in the visible part")                                    \
+    X("", "phase", act_show_pane(model, view, input, argument, VIEW_PHASE), "",          \
+      "SIGNAL SIGNAL", "a pane of one signal over another: phase gap force")             \
+    X("", "residual", act_show_pane(model, view, input, argument, VIEW_RESIDUAL), "",    \
+      "SIGNAL...", "a pane of :data minus the run")                                      \
+    X("", "spectrum", act_show_pane(model, view, input, argument, VIEW_SPECTRUM), "",    \
+      "SIGNAL", "a pane of its amplitudes in the visible part")                          \
     X("", "statistics", act_statistics(view), "X", "",                                   \
       "min, max, mean, rms, integral from mark to cursor")                               \
     X("Scenarios", "open", act_open(model, view, input, argument), "o ]:+1 [:-1",        \
@@ -169,17 +170,17 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "picture of the arm at this instant")                                              \
     X("The lab", "palette", act_palette(view, input, argument), "C-p", "[WORDS]",        \
       "find anything by words: commands, values, scenarios")                             \
-    X("", "glyphs", act_glyphs(view, input, argument), "", "braille|blocks|ascii",       \
-      "characters to draw with")                                                         \
-    X("", "theme", act_theme(view, input, argument), "", "dark|light|mono",              \
+    X("", "glyphs", act_look(view, input, "glyphs", argument), "",                       \
+      "braille|blocks|ascii", "characters to draw with")                                 \
+    X("", "theme", act_look(view, input, "theme", argument), "", "dark|light|mono",      \
       "colours for that ground")                                                         \
-    X("", "pixels", act_pixels(view, input, argument), "", "auto|off",                   \
+    X("", "pixels", act_look(view, input, "pixels", argument), "", "auto|off",           \
       "pictures where the terminal has them")                                            \
     X("", "rate", act_rate(view, input, argument), "", "KB|off",                         \
       "most that pictures may take, in kB a second: 200 over ssh")                       \
     X("", "bending", act_bending(view, input, argument), "", "[FACTOR]",                 \
       "drawn that many times as large; alone: as it is")                                 \
-    X("", "mouse", act_mouse(view, input, argument), "", "on|off",                       \
+    X("", "mouse", act_look(view, input, "mouse", argument), "", "on|off",               \
       "off lets the terminal select text")                                               \
     X("", "panes", act_panes(view, input, argument), "", "134",                          \
       "these panes of curves and no others")                                             \
@@ -192,7 +193,7 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
     X("", "redraw", act_redraw(view), "C-l", "", "draw the whole screen anew")           \
     X("", "wait", act_wait(model, view, input, argument), "", "SECONDS",                 \
       "in a script: let time pass")                                                      \
-    X("", "help", act_help(view, argument), "?", "[WORDS]",                              \
+    X("", "help", act_page(view, PANEL_HELP, argument), "?", "[WORDS]",                  \
       "this page, or what of it has all words")                                          \
     X("", "interrupt", act_interrupt(model, view, input), "C-c", "",                     \
       "stop what is being computed, else leave")                                         \
