@@ -77,7 +77,8 @@ struct gl_offscreen {
     function_finder find;
     void *context, *display, *surface;
     unsigned char *small; // OSMesa's own picture, which nothing is drawn into
-    int width, height;
+    int width, height;    // of the picture [pixels]
+    int rows;             // of it that are drawn at once
 #define GL_MEMBER(result, name, arguments) result(*name) arguments;
     GL_FUNCTIONS(GL_MEMBER)
 #undef GL_MEMBER
@@ -242,7 +243,7 @@ static bool make_framebuffer(gl_offscreen *g)
 
     for (int i = 0; i < 2; i++) {
         g->BindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
-        g->RenderbufferStorage(GL_RENDERBUFFER, formats[i], g->width, g->height);
+        g->RenderbufferStorage(GL_RENDERBUFFER, formats[i], g->width, g->rows);
         g->FramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER,
                                    buffers[i]);
     }
@@ -263,7 +264,7 @@ static status prepare_offscreen(gl_offscreen *g, char name[RENDERER_NAME], fault
     FAULT_IF(!load_functions(g), f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3",
              library);
     FAULT_IF(!make_framebuffer(g), f, STATUS_CANNOT_WRITE,
-             "%s cannot draw a picture of %d x %d pixels", library, g->width, g->height);
+             "%s cannot draw a picture of %d x %d pixels", library, g->width, g->rows);
 
     // what draws, as the picture's notes name it
     snprintf(name, RENDERER_NAME, "%s, %s, OpenGL %s", library,
@@ -278,14 +279,15 @@ static status prepare_offscreen(gl_offscreen *g, char name[RENDERER_NAME], fault
 }
 
 status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width,
-                           int height, char name[RENDERER_NAME], fault *f)
+                           int height, int rows, char name[RENDERER_NAME], fault *f)
 {
-    assert(width > 0 && height > 0);
+    assert(width > 0 && height > 0 && rows > 0);
     g_autoptr(gl_offscreen) g = g_new0(gl_offscreen, 1);
     *out = NULL;
     g->library = library;
     g->width = width;
     g->height = height;
+    g->rows = rows;
     TRY(prepare_offscreen(g, name, f));
     *out = g_steal_pointer(&g);
     return STATUS_OK;
@@ -327,16 +329,17 @@ status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box regio
 {
     FAULT_IF(!make_current(g), f, STATUS_CANNOT_WRITE, "OpenGL's context is lost");
 
-    // only the part of the picture that is wanted
-    g->Viewport(0, 0, g->width, g->height);
-    g->Scissor(region.x, region.y, region.width, region.height);
+    // only the part of the picture that is wanted, moved to the first of the rows
+    assert(region.height <= g->rows);
+    g->Viewport(0, -region.y, g->width, g->height);
+    g->Scissor(region.x, 0, region.width, region.height);
     g->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 
     // triangles in, which come lit and in clip coordinates; pixels out
     g->VertexPointer(4, GL_FLOAT, sizeof *t->vertices, t->vertices->place);
     g->ColorPointer(4, GL_FLOAT, sizeof *t->vertices, t->vertices->colour);
     g->DrawElements(GL_TRIANGLES, (int)t->corner_count, GL_UNSIGNED_INT, t->corners);
-    g->ReadPixels(region.x, region.y, region.width, region.height, GL_BGRA,
+    g->ReadPixels(region.x, 0, region.width, region.height, GL_BGRA,
                   GL_UNSIGNED_INT_8_8_8_8_REV, pixels);
 
     // one question for all calls

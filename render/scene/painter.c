@@ -33,7 +33,7 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
     for (scene_renderer r = RENDER_OSMESA; r <= RENDER_EGL && p->gl == NULL; r++) {
         if (which == r || which == RENDER_AUTO) {
             code = gl_offscreen_create(&p->gl, r, samples * width, samples * height,
-                                       p->name, f);
+                                       samples * MIN(height, SAMPLE_BAND), p->name, f);
         }
     }
 
@@ -145,7 +145,6 @@ status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface
 {
     assert(what->opacity >= 0 && what->opacity <= 1);
     const mesh *m = what->mesh;
-    status code = STATUS_OK;
     if (m->vertex_count > p->vertex_capacity) {
         p->vertices = g_renew(gl_vertex, p->vertices, m->vertex_count);
         p->vertex_capacity = m->vertex_count;
@@ -157,19 +156,24 @@ status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface
         return STATUS_OK;
     }
 
-    // samples, by hand or by OpenGL
+    // samples filled by hand
     const gl_triangles all = {p->vertices, m->vertex_count, m->corners, m->corner_count};
-    pixel_box held = {0, 0, p->samples.width, p->samples.height};
     samples_take(&p->samples, &all);
-    if (p->gl != NULL) {
-        const int n = p->samples.samples;
-        const pixel_box sampled = {n * r.x, n * r.y, n * r.width, n * r.height};
-        held = r;
-        code = gl_offscreen_draw(p->gl, &all, sampled, p->samples.pixels, f);
+    if (p->gl == NULL) {
+        const pixel_box whole = {0, 0, p->samples.width, p->samples.height};
+        samples_lay_over(&p->samples, whole, what->opacity, onto);
+        return STATUS_OK;
     }
 
-    if (code == STATUS_OK) {
-        samples_lay_over(&p->samples, held, what->opacity, onto);
+    // or by OpenGL, in bands of the picture
+    const int n = p->samples.samples;
+    for (int top = r.y; top < r.y + r.height; top += SAMPLE_BAND) {
+        const pixel_box band = {r.x, top, r.width,
+                                MIN(SAMPLE_BAND, r.y + r.height - top)};
+        const pixel_box sampled = {n * band.x, n * band.y, n * band.width,
+                                   n * band.height};
+        TRY(gl_offscreen_draw(p->gl, &all, sampled, p->samples.pixels, f));
+        samples_lay_over(&p->samples, band, what->opacity, onto);
     }
-    return code;
+    return STATUS_OK;
 }

@@ -22,7 +22,8 @@ void samples_init(sample_buffer *b, int width, int height, int samples, bool dep
                          .tiles_down = (height + SAMPLE_TILE - 1) / SAMPLE_TILE};
 
     // with room for what fill_columns reads after the last
-    const size_t count = (size_t)(samples * width) * (size_t)(samples * height) + FOUR;
+    const int rows = depths ? height : MIN(height, SAMPLE_BAND);
+    const size_t count = (size_t)(samples * width) * (size_t)(samples * rows) + FOUR;
     b->pixels = g_new0(uint32_t, count);
     b->touched = g_new(unsigned char, b->tiles_across * b->tiles_down);
     if (depths) {

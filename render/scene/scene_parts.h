@@ -122,11 +122,12 @@ typedef struct gl_vertex {
 
 enum { RENDERER_NAME = 300 };
 
-// A renderer of pictures of up to width by height pixels, RENDER_OSMESA or RENDER_EGL,
-// and its name: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...". STATUS_CANNOT_WRITE if
-// the library is missing or has no OpenGL 3, with what to install in f.
+// A renderer of pictures of width by height pixels, up to `rows` rows at once,
+// RENDER_OSMESA or RENDER_EGL, and its name: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits),
+// ...". STATUS_CANNOT_WRITE if the library is missing or has no OpenGL 3, with what to
+// install in f.
 status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width,
-                           int height, char name[RENDERER_NAME], fault *f);
+                           int height, int rows, char name[RENDERER_NAME], fault *f);
 void gl_offscreen_destroy(gl_offscreen *g);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(gl_offscreen, gl_offscreen_destroy)
 
@@ -138,20 +139,23 @@ typedef struct gl_triangles {
     size_t corner_count;
 } gl_triangles;
 
-// Draws triangles on a transparent background with a depth test and stores the region as
-// rows of 0xAARRGGBB with premultiplied opacity.
+// Draws triangles on a transparent background with a depth test and stores the region, no
+// higher than the rows drawn at once, as rows of 0xAARRGGBB with premultiplied opacity.
 status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region,
                          uint32_t *pixels, fault *f);
 
-enum { SAMPLE_TILE = 16 }; // edge of a tile [pixels]
+enum {
+    SAMPLE_TILE = 16,             // edge of a tile [pixels]
+    SAMPLE_BAND = 4 * SAMPLE_TILE // height of the bands that OpenGL draws one by one
+};
 
 // The samples of a picture of width by height pixels. Tiles that nothing touched are
 // skipped.
 typedef struct sample_buffer {
     int width, height; // of the picture [pixels]
     int samples;       // of a pixel along each edge
-    // 0xAARRGGBB; if triangles are filled without OpenGL, 0 and empty depths between
-    // pictures
+    // 0xAARRGGBB; of a band, or if triangles are filled without OpenGL of all, 0 and
+    // empty depths between pictures
     uint32_t *pixels;
     float *depths; // NULL: OpenGL fills the pixels
     unsigned char *touched;
