@@ -34,15 +34,22 @@ static status commit_rows(sweep_store *store, fault *f)
     return STATUS_OK;
 }
 
-static status tell_quantity(sweep_store *store, sweep_share share, const char *key,
-                            double *values, size_t *failed, fault *f)
+static status tell_values(sweep_store *store, sweep_share share, const char *key,
+                          sweep_value_taker *take, void *context, size_t *failed,
+                          fault *f)
 {
     const rows *r = (rows *)store;
     (void)f;
     (void)share;
-    for (int q = 0; q < summary_count; q++) {
-        for (int i = 0; i < RUNS && strcmp(summary_table[q].key, key) == 0; i++) {
-            values[i] = summary_value(&r->results[i], q);
+    for (size_t i = 0; i < RUNS; i++) {
+        double value = (double)i + 1; // "run"
+        for (int q = 0; q < summary_count; q++) {
+            if (strcmp(summary_table[q].key, key) == 0) {
+                value = summary_value(&r->results[i], q);
+            }
+        }
+        if (r->present[i]) {
+            take(context, i, value);
         }
     }
     if (failed != NULL) {
@@ -62,8 +69,7 @@ TEST(a_sweep_is_computed_into_rows_of_any_kind)
     base.parameters.control.law = LAW_HYBRID;
     base.parameters.set[PARAMETER_INDEX(control.law)] = 1;
     assert_int_equal(parameters_resolve(&base.parameters, NULL), STATUS_OK);
-    rows r = {.store = {NULL, 0, put_row, commit_rows, tell_quantity}};
-    r.store.present = r.present;
+    rows r = {.store = {0, put_row, commit_rows, tell_values}};
 
     // all runs, and then none
     KEPT_SWEEP(s);

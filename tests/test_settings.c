@@ -185,7 +185,7 @@ TEST(an_axis_varies_one_of_them)
     DONE(sweep_axis_parse(&axis, values, false, &f));
     assert_int_equal(axis.count, 3);
     assert_true(isnan(sweep_axis_get(&axis, &p)));
-    DONE(sweep_axis_apply(&axis, axis.values[1], &p, &f));
+    DONE(sweep_axis_apply(&axis, sweep_axis_value(&axis, 1), &p, &f));
     check_close(sweep_axis_get(&axis, &p), 0.2, 1e-15);
     sweep_axis_format(&axis, 0.2, text, sizeof text);
     assert_string_equal(text, "0.2");

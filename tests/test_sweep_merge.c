@@ -51,6 +51,48 @@ static void check_refused(char **files, int count, const char *says)
     assert_int_not_equal(access("refused", F_OK), 0);
 }
 
+// Eleven runs of 1e10, whatever the design: no run but these is looked at, and each is
+// what its values give alone.
+SWEEP_TEST(a_part_of_a_sweep_of_any_size_is_computed)
+{
+    static char volts[] = "motor.voltage=1:2:100000", stiffness[] = "arm.k2=4:5:100000";
+    for (sweep_sampling how = SWEEP_GRID; how <= SWEEP_LATIN; how++) {
+        char *vary[] = {volts, stiffness}, *parts[] = {"first", "last"};
+        const size_t total = 10000000000;
+        sweep_request request = {.vary = vary,
+                                 .vary_count = 2,
+                                 .sampling = how,
+                                 .runs = how == SWEEP_GRID ? 0 : total};
+        for (int i = 0; i < 2; i++) {
+            request.share = (sweep_share){i == 0 ? 1 : 999999999, 999999999};
+            KEPT_SWEEP(s);
+            DONE(sweep_init(&s, &base, &request, &f));
+            assert_int_equal(s.run_count, total);
+            KEPT_STORE(store) = must_open(parts[i], &s);
+            sweep_progress progress;
+            const sweep_options options = {.share = request.share, .jobs = 1};
+            DONE(sweep_run(&s, store, &options, &progress, &f));
+            assert_int_equal(progress.done, i == 0 ? 11 : 10);
+
+            // the last of them alone
+            double peaks[11];
+            const size_t last = progress.total - 1;
+            DONE(sweep_store_quantity(store, request.share, "peak_force_N", peaks, NULL,
+                                      &f));
+            scenario alone;
+            DONE(sweep_scenario(&s, sweep_share_run(request.share, last), &alone, &f));
+            KEPT_RUN(result) = run_done(&alone, false);
+            check_close(peaks[last], result.summary.peak_force_N, 0);
+        }
+        sweep_merged merged;
+        DONE(sweep_merge(parts, 2, "merged", &merged, &f));
+        assert_int_equal(merged.runs, 21);
+        assert_int_equal(merged.total, total);
+        unlink(parts[0]);
+        unlink(parts[1]);
+    }
+}
+
 // The first parameter of the table is one like any other.
 SWEEP_TEST(parts_may_vary_the_model)
 {

@@ -114,7 +114,7 @@ TEST(bad_requests_are_refused_with_a_sentence)
         {"method.name=event,newmrk", NULL, SWEEP_GRID, 0, "newmrk"},
         {"arm.model=corrected,printed", "arm.links=2,3", SWEEP_GRID, 0,
          "run 4 (arm.model = printed, arm.links = 3): the printed model has two links"},
-        {"arm.k1=1:2:10000", "arm.k2=1:2:10000", SWEEP_GRID, 0, "more than"},
+        {"arm.k1=1:2:1e9", "arm.k2=1:2:1e9", SWEEP_GRID, 0, "more than"},
         {"arm.k2=1:2:4", NULL, SWEEP_GRID, 7, "--runs"},
         {"arm.k2=1:2", NULL, SWEEP_RANDOM, 0, "--runs"},
     };

@@ -143,11 +143,12 @@ static status count_told(void *context, const tuning *t, fault *f)
 }
 
 static status count_looked(sweep_store *store, sweep_share share, const char *key,
-                           double *values, size_t *failed, fault *f)
+                           sweep_value_taker *take, void *context, size_t *failed,
+                           fault *f)
 {
     const size_t runs = sweep_share_count(share, 40);
     most_looked = runs > most_looked ? runs : most_looked;
-    return sweep_store_quantity(store, share, key, values, failed, f);
+    return sweep_store_values(store, share, key, take, context, failed, f);
 }
 
 // A search that goes on in its store tells no value before it computes one, as the best
@@ -169,7 +170,7 @@ TEST(a_replay_tells_nothing_and_reads_each_run_once)
     DONE(tune_init(&t[1], &asked, &f));
     sweep_store *store;
     DONE(sweep_store_open(&store, NULL, &t[0].plan, &f));
-    store->quantity = count_looked;
+    store->values = count_looked;
     for (int i = 0; i < 2; i++) {
         before = told;
         t[i].improved = count_told;

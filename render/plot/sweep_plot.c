@@ -128,16 +128,13 @@ static void order_points(owned_figure *o, varied *v)
     }
 
     // numbers ascend
-    if (!v->words) {
-        g_qsort_with_data(v->order, (int)v->count, sizeof *v->order, compare_values,
-                          axis->values);
-    }
+    double *values = owned_figure_numbers(o, v->count);
     for (size_t i = 0; i < v->count; i++) {
-        if (v->words) {
-            v->place[i] = (double)i;
-        } else {
-            v->place[i] = axis->values[v->order[i]];
-        }
+        values[i] = v->words ? (double)i : sweep_axis_value(axis, i);
+    }
+    g_qsort_with_data(v->order, (int)v->count, sizeof *v->order, compare_values, values);
+    for (size_t i = 0; i < v->count; i++) {
+        v->place[i] = values[v->order[i]];
     }
 }
 
@@ -150,9 +147,9 @@ static bool points_are_good_ticks(const varied *v)
 
     for (size_t i = 0; i < v->count && good; i++) {
         char digits[32];
-        decimal_print(digits, sizeof digits, "%.3g", axis->values[i]);
-        good = fabs(decimal_parse(digits, NULL) - axis->values[i]) <=
-               1e-9 * fabs(axis->values[i]);
+        const double value = sweep_axis_value(axis, i);
+        decimal_print(digits, sizeof digits, "%.3g", value);
+        good = fabs(decimal_parse(digits, NULL) - value) <= 1e-9 * fabs(value);
     }
     return good;
 }
@@ -160,7 +157,7 @@ static bool points_are_good_ticks(const varied *v)
 static const char *point_label(owned_figure *o, const varied *v, size_t i)
 {
     char word[PARAMETER_TEXT_SIZE] = "";
-    double value = v->axis->values[v->order[i]];
+    const double value = sweep_axis_value(v->axis, v->order[i]);
     if (!v->words) {
         return owned_figure_keep(o, text_number(value, 6));
     }
@@ -203,7 +200,7 @@ static figure_axis varied_axis(owned_figure *o, varied *v, const sweep_axis *axi
     out.room = DOTS_ROOM;
 
     // words are counted
-    if (axis->values != NULL) {
+    if (axis->count > 0) {
         order_points(o, v);
     }
     if (v->words) {
@@ -227,7 +224,7 @@ static figure_axis varied_axis(owned_figure *o, varied *v, const sweep_axis *axi
 static double place_on_axis(const varied *v, double value)
 {
     for (size_t i = 0; v->words && i < v->count; i++) {
-        if (v->axis->values[i] == value) {
+        if (sweep_axis_value(v->axis, i) == value) {
             return (double)i;
         }
     }

@@ -81,19 +81,19 @@ static status count_runs(sweep *s, size_t runs, fault *f)
 {
     const bool grid = s->sampling == SWEEP_GRID;
     FAULT_IF(!grid && (runs < 1 || runs > SWEEP_MOST_RUNS), f, STATUS_BAD_ARGUMENT,
-             "--sample %s needs --runs with a number from 1 to %d",
+             "--sample %s needs --runs with a number from 1 to %zu",
              sweep_sampling_name(s->sampling), SWEEP_MOST_RUNS);
 
-    // of a grid the product of its axes, whose factors are small enough to fit
+    // of a grid the product of its axes
     if (grid) {
         s->run_count = 1;
     } else {
         s->run_count = runs;
     }
     for (int i = 0; i < s->axis_count && grid; i++) {
+        FAULT_IF(s->axes[i].count > SWEEP_MOST_RUNS / s->run_count, f,
+                 STATUS_BAD_ARGUMENT, "the grid has more than %zu runs", SWEEP_MOST_RUNS);
         s->run_count *= s->axes[i].count;
-        FAULT_IF(s->run_count > SWEEP_MOST_RUNS, f, STATUS_BAD_ARGUMENT,
-                 "the grid has more than %d runs", SWEEP_MOST_RUNS);
     }
     if (grid && runs != 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -142,7 +142,7 @@ double sweep_value(const sweep *s, size_t run, int axis)
     for (int i = s->axis_count - 1; i > axis; i--) {
         run /= s->axes[i].count;
     }
-    return s->axes[axis].values[run % s->axes[axis].count];
+    return sweep_axis_value(&s->axes[axis], run % s->axes[axis].count);
 }
 
 void sweep_value_text(const sweep *s, size_t run, int axis, char *text, size_t size)
@@ -160,29 +160,34 @@ status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
     return sweep_axes_scenario(s->axes, s->axis_count, values, s->base, derived, f);
 }
 
-// Checks, before anything is computed, that the values of each run go together: more
-// links than two do not go with the printed model.
-static status check_combinations(const sweep *s, fault *f)
+// That the values of a run do not go together, with the values.
+static status combination_fault(const sweep *s, size_t run, const fault *why, fault *f)
+{
+    char values[512] = "";
+    size_t length = 0;
+    for (int i = 0; i < s->axis_count && length < sizeof values; i++) {
+        char text[128];
+        sweep_value_text(s, run, i, text, sizeof text);
+        length += (size_t)snprintf(values + length, sizeof values - length, "%s%s = %s",
+                                   i > 0 ? ", " : "", s->axes[i].name, text);
+    }
+    return fault_set_at(f, STATUS_BAD_ARGUMENT, why->path, "run %zu (%s): %.400s",
+                        run + 1, values, why->text);
+}
+
+// Checks, before anything is computed, that the values of each run of a share go
+// together: more links than two do not go with the printed model.
+static status check_combinations(const sweep *s, sweep_share share, fault *f)
 {
     // what a very large sweep has beyond these is told in the rows of the runs
     enum { CHECKED = 100000 };
-    for (size_t run = 0; run < s->run_count && run < CHECKED; run++) {
+    const size_t count = sweep_share_count(share, s->run_count);
+    for (size_t i = 0; i < count && i < CHECKED; i++) {
+        const size_t run = sweep_share_run(share, i);
         scenario derived;
         fault why = {.path = ""};
         if (sweep_scenario(s, run, &derived, &why) != STATUS_OK) {
-            // told with the values of the run
-            char values[512] = "";
-            size_t length = 0;
-            for (int i = 0; i < s->axis_count && length < sizeof values; i++) {
-                char text[128];
-                sweep_value_text(s, run, i, text, sizeof text);
-                length +=
-                    (size_t)snprintf(values + length, sizeof values - length, "%s%s = %s",
-                                     i > 0 ? ", " : "", s->axes[i].name, text);
-            }
-
-            return fault_set_at(f, STATUS_BAD_ARGUMENT, why.path, "run %zu (%s): %.400s",
-                                run + 1, values, why.text);
+            return combination_fault(s, run, &why, f);
         }
     }
     return STATUS_OK;
@@ -232,7 +237,7 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
 
     // whether each run can be begun
     s->base = base;
-    const status code = check_combinations(s, f);
+    const status code = check_combinations(s, request->share, f);
     if (code != STATUS_OK) {
         sweep_finish(s);
     }

@@ -22,6 +22,28 @@ typedef enum sweep_sampling { SWEEP_GRID, SWEEP_RANDOM, SWEEP_LATIN } sweep_samp
 const char *sweep_sampling_name(sweep_sampling sampling);
 int sweep_sampling_find(const char *name);
 
+// Every parts-th run, beginning with number `part` (from 1): what one of several machines
+// computes.
+typedef struct sweep_share {
+    int part, parts; // 0, 0: all runs
+} sweep_share;
+
+// Number of the i-th run of a share, and how many of `total` runs it has.
+static inline size_t sweep_share_run(sweep_share share, size_t i)
+{
+    if (share.parts == 0) {
+        return i;
+    }
+    return i * (size_t)share.parts + (size_t)share.part - 1;
+}
+static inline size_t sweep_share_count(sweep_share share, size_t total)
+{
+    if (share.parts == 0) {
+        return total;
+    }
+    return (total + (size_t)(share.parts - share.part)) / (size_t)share.parts;
+}
+
 typedef struct sweep {
     const scenario *base; // borrowed; NULL in a plan
     sweep_axis axes[SWEEP_MOST_AXES];
@@ -48,6 +70,7 @@ typedef struct sweep_request {
     const char
         *file; // in whose lines `vary` stands, one number for each; NULL: a command line
     const int *lines;
+    sweep_share share; // whose combinations are checked
 } sweep_request;
 
 // Reads a request and checks every value and combination of values. The last parameter of

@@ -188,34 +188,57 @@ double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n)
     return (low * (last - x) + high * x) / last;
 }
 
-// The values of a range; each is checked as a parameter, and none may come twice.
-static status fill_range(sweep_axis *axis, size_t n, fault *f)
+static bool is_whole(const sweep_axis *axis)
 {
-    char text[SWEEP_VALUE_TEXT];
-    axis->values = malloc(n * sizeof *axis->values);
-    if (axis->values == NULL) {
-        return fault_no_memory(f);
+    return sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
+}
+
+double sweep_axis_value(const sweep_axis *axis, size_t i)
+{
+    assert(i < axis->count);
+    if (axis->values != NULL) {
+        return axis->values[i];
     }
+    const double value = sweep_axis_point(axis, i, axis->count);
+    if (is_whole(axis) && i > 0 && i + 1 < axis->count) {
+        return round(value);
+    }
+    return value;
+}
+
+// STATUS_BAD_ARGUMENT if value number i of a range is that before it.
+static status check_distinct(const sweep_axis *axis, size_t i, fault *f)
+{
+    const double value = sweep_axis_value(axis, i);
+    if (value != sweep_axis_value(axis, i - 1)) {
+        return STATUS_OK;
+    }
+    char text[SWEEP_VALUE_TEXT];
+    sweep_axis_format(axis, value, text, sizeof text);
+    return fault_set(f, STATUS_BAD_ARGUMENT, "%zu values give %s twice", axis->count,
+                     text);
+}
+
+// Checks the n values of a range without looking at all of them: none may come twice, and
+// all are allowed if both ends are and an even spacing meets whole numbers only.
+static status check_range(sweep_axis *axis, size_t n, fault *f)
+{
     axis->count = n;
+    TRY(check_axis_value(axis, axis->low, f));
+    TRY(check_axis_value(axis, axis->high, f));
+    const bool rounded = axis->logarithmic && is_whole(axis);
+    if (!rounded) {
+        TRY(check_axis_value(axis, sweep_axis_point(axis, 1, n), f));
+        TRY(check_distinct(axis, 1, f));
+        return check_distinct(axis, n - 1, f);
+    }
 
-    // a range may leave what the parameter allows at either end
-    for (size_t i = 0; i < n; i++) {
-        // a whole number as near as there is one; an even spacing that misses them is
-        // refused
-        const bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
-        const double value = sweep_axis_point(axis, i, n);
-        if (axis->logarithmic && whole && i > 0 && i + 1 < n) {
-            axis->values[i] = round(value);
-        } else {
-            axis->values[i] = value;
-        }
-        TRY(check_axis_value(axis, axis->values[i], f));
-
-        // whole numbers too close together
-        if (i > 0 && axis->values[i] == axis->values[i - 1]) {
-            sweep_axis_format(axis, axis->values[i], text, sizeof text);
-            return fault_set(f, STATUS_BAD_ARGUMENT, "%zu values give %s twice", n, text);
-        }
+    // rounded numbers that lie less than one apart, from the smaller end on
+    double apart = 0;
+    for (size_t k = 1; k < n && apart < 1; k++) {
+        const size_t i = axis->low < axis->high ? k : n - k;
+        TRY(check_distinct(axis, i, f));
+        apart = fabs(sweep_axis_point(axis, i, n) - sweep_axis_point(axis, i - 1, n));
     }
     return STATUS_OK;
 }
@@ -226,10 +249,10 @@ static status read_value_count(const char *text, size_t *count, fault *f)
     const char *rest;
     double value;
     FAULT_IF(!decimal_read(text, &value, &rest) || *rest != '\0' ||
-                 value != floor(value) || value < 2 || value > SWEEP_MOST_RUNS,
+                 value != floor(value) || value < 2 || value > (double)SWEEP_MOST_RUNS,
              f, STATUS_BAD_ARGUMENT,
-             "'%.40s' is no number of values, expected a whole number from 2 to %d", text,
-             SWEEP_MOST_RUNS);
+             "'%.40s' is no number of values, expected a whole number from 2 to %zu",
+             text, SWEEP_MOST_RUNS);
     *count = (size_t)value;
     return STATUS_OK;
 }
@@ -296,7 +319,7 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
     if (drawn) {
         return STATUS_OK;
     }
-    return fill_range(axis, n, f);
+    return check_range(axis, n, f);
 }
 
 // Reads "v1,v2,v3".
@@ -375,7 +398,7 @@ double sweep_axis_value_at(const sweep_axis *axis, double share)
     }
 
     // each whole number owns the unit interval round it
-    const bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
+    const bool whole = is_whole(axis);
     double from = low, to = high, value;
     if (whole) {
         from = low - 0.5;

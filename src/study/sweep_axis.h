@@ -4,7 +4,10 @@
 
 #include "src/scenario/scenario.h"
 
-enum { SWEEP_MOST_RUNS = 10000000, SWEEP_VALUE_TEXT = 128, SWEEP_NAME = 64 };
+enum { SWEEP_VALUE_TEXT = 128, SWEEP_NAME = 64 };
+
+// As many runs as have a number of their own in a double.
+#define SWEEP_MOST_RUNS ((size_t)1 << 53)
 
 // One varied parameter, or one number of a list or of control.settings. Words and truth
 // values are numbers here, as in parameter_get.
@@ -13,10 +16,9 @@ typedef struct sweep_axis {
     int element;   // the number of a list that is varied, counted from 1; 0: no list
     char name[SWEEP_NAME]; // path of the parameter, of a list's number
                            // "arm.joint_stiffness[2]"
-    double *
-        values; // those of a list, or of a range in a grid; NULL for a range to draw from
-    size_t count;     // of values
-    double low, high; // of a range, as given; low may be the larger one
+    double *values;        // of a list, NULL for a range
+    size_t count;          // of values, 0 for a range to draw from
+    double low, high;      // of a range, as given; low may be the larger one
     bool is_range;
     bool together; // drawn at the share of the axis before it, so that the values go in
                    // pairs
@@ -62,6 +64,9 @@ double sweep_axis_get(const sweep_axis *axis, const parameters *p);
 // Point number i < n of n >= 2 that span a range evenly, or in equal ratios if it is
 // logarithmic.
 double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n);
+
+// Value number i < axis->count, of a list or of a range in a grid.
+double sweep_axis_value(const sweep_axis *axis, size_t i);
 
 // A value of the axis as a scenario file would give it, exact ("newmark", "0.1").
 void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size);

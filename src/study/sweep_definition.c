@@ -118,7 +118,7 @@ static unsigned read_outside(const sweep *s)
             }
             sources &= ~bit;
             for (size_t v = 0; v < axis->count; v++) {
-                if (axis->values[v] == source->choice) {
+                if (sweep_axis_value(axis, v) == source->choice) {
                     sources |= bit;
                 }
             }

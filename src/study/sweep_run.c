@@ -10,6 +10,31 @@
 
 #define COMMIT_INTERVAL 0.5 // [s]
 
+// The numbers of a share as they come.
+typedef struct quantity_column {
+    sweep_share share;
+    double *values;
+} quantity_column;
+
+// A sweep_value_taker.
+static bool take_value(void *context, size_t run, double value)
+{
+    const quantity_column *c = context;
+    const size_t step = c->share.parts > 0 ? (size_t)c->share.parts : 1;
+    c->values[run / step] = value;
+    return true;
+}
+
+status sweep_quantity(sweep_store *store, size_t run_count, sweep_share share,
+                      const char *key, double *values, size_t *failed, fault *f)
+{
+    quantity_column column = {share, values};
+    for (size_t i = 0; i < sweep_share_count(share, run_count); i++) {
+        values[i] = (double)NAN;
+    }
+    return store->values(store, share, key, take_value, &column, failed, f);
+}
+
 // A sweep being computed; all but what is to be computed, and how, is the calling
 // thread's.
 typedef struct sweep_execution {
@@ -17,21 +42,93 @@ typedef struct sweep_execution {
     sweep_store *store;
     const sweep_options *options;
     sweep_progress *progress;
-    size_t *wanted;          // the runs that are missing, in order
+    struct gap *gaps; // the runs of the share that are missing, in order
+    size_t gap_count;
+    size_t next; // place in the share behind the last run that is there
+    size_t missing;
     double start, committed; // instants by the clock [s]
 } sweep_execution;
+
+// Runs that are missing, one behind the other in the share of the sweep.
+typedef struct gap {
+    size_t first;  // place in the share
+    size_t before; // how many are missing before it
+} gap;
+
+// Adds the gap up to place `end`, if there is one. False without memory.
+static bool add_gap(sweep_execution *e, size_t end)
+{
+    const size_t first = e->next;
+    e->next = end + 1;
+    if (first == end) {
+        return true;
+    }
+
+    // room for twice as many whenever it is full
+    if ((e->gap_count & (e->gap_count - 1)) == 0) {
+        gap *more = realloc(e->gaps, (2 * e->gap_count + 1) * sizeof *more);
+        if (more == NULL) {
+            return false;
+        }
+        e->gaps = more;
+    }
+    e->gaps[e->gap_count++] = (gap){first, e->missing};
+    e->missing += end - first;
+    return true;
+}
+
+// A sweep_value_taker.
+static bool take_present(void *context, size_t run, double value)
+{
+    const sweep_share share = ((sweep_execution *)context)->options->share;
+    (void)value;
+    if (share.parts > 0) {
+        run /= (size_t)share.parts;
+    }
+    return add_gap(context, run);
+}
+
+// Finds what of a share of `total` runs an earlier call has not computed.
+static status find_missing(sweep_execution *e, size_t total, fault *f)
+{
+    if (e->store->count > 0) {
+        TRY(e->store->values(e->store, e->options->share, "run", take_present, e, NULL,
+                             f));
+    }
+    const bool whole = e->next <= total && add_gap(e, total);
+    if (whole) {
+        return STATUS_OK;
+    }
+    return fault_no_memory(f);
+}
+
+// The number of the i-th missing run.
+static size_t missing_run(const sweep_execution *e, size_t i)
+{
+    size_t low = 0, high = e->gap_count;
+    while (high - low > 1) {
+        const size_t middle = (low + high) / 2;
+        if (e->gaps[middle].before <= i) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    const gap *found = &e->gaps[low];
+    return sweep_share_run(e->options->share, found->first + i - found->before);
+}
 
 static status make_sweep_run(void *context, size_t i, scenario *made, fault *f)
 {
     const sweep_execution *e = context;
-    return sweep_scenario(e->sweep, e->wanted[i], made, f);
+    return sweep_scenario(e->sweep, missing_run(e, i), made, f);
 }
 
 static status store_run(void *context, size_t i, const summary *s, fault *f)
 {
     sweep_execution *e = context;
     sweep_progress *p = e->progress;
-    const size_t run = e->wanted[i];
+    const size_t run = missing_run(e, i);
     if (s->status == STATUS_STOPPED) {
         return STATUS_OK; // it was passed over
     }
@@ -106,20 +203,9 @@ static status run_missing(sweep_execution *e, fault *f)
 {
     const double duration = e->sweep->base->parameters.run.duration;
     sweep_progress *p = e->progress;
-    size_t count = 0;
     p->total = sweep_share_count(e->options->share, e->sweep->run_count);
-    SCOPED(free_kept) size_t *wanted = malloc((p->total + 1) * sizeof *wanted);
-    if (wanted == NULL) {
-        return fault_no_memory(f);
-    }
-    e->wanted = wanted;
-    for (size_t i = 0; i < p->total; i++) {
-        const size_t run = sweep_share_run(e->options->share, i);
-        p->done += e->store->present[run];
-        if (!e->store->present[run]) {
-            wanted[count++] = run;
-        }
-    }
+    TRY(find_missing(e, p->total, f));
+    p->done = p->total - e->missing;
 
     // heavy runs go one by one: none of them is to wait for another to be stored, or to
     // hold up the end of a sweep that is stopped
@@ -128,7 +214,7 @@ static status run_missing(sweep_execution *e, fault *f)
         together = (size_t)fmax(1, RUN_TOGETHER / fmax(duration, 1));
     }
     const batch missing = {.context = e,
-                           .count = count,
+                           .count = e->missing,
                            .make = make_sweep_run,
                            .take = store_run,
                            .together = together,
@@ -154,6 +240,7 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
     *progress = (sweep_progress){.total = s->run_count};
 
     const status code = run_missing(&e, f);
+    free(e.gaps);
     report_progress(&e);
     return code;
 }

@@ -9,47 +9,31 @@
 
 enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
 
-// Every parts-th run, beginning with number `part` (from 1): what one of several machines
-// computes.
-typedef struct sweep_share {
-    int part, parts; // 0, 0: all runs
-} sweep_share;
-
-// Number of the i-th run of a share, and how many of `total` runs it has.
-static inline size_t sweep_share_run(sweep_share share, size_t i)
-{
-    if (share.parts == 0) {
-        return i;
-    }
-    return i * (size_t)share.parts + (size_t)share.part - 1;
-}
-static inline size_t sweep_share_count(sweep_share share, size_t total)
-{
-    if (share.parts == 0) {
-        return total;
-    }
-    return (total + (size_t)(share.parts - share.part)) / (size_t)share.parts;
-}
+// Takes a number of a run, from 0: NaN where the run failed or the quantity did not
+// occur. False: no other one is wanted.
+typedef bool sweep_value_taker(void *context, size_t run, double value);
 
 // Where the rows of a sweep are kept, one for each run that was computed: what a store
 // can do. Its functions are given itself; their faults are sentences.
 typedef struct sweep_store {
-    // 1 for every run that the store has, 0 for the others, and how many those are; `put`
-    // goes on with it.
-    unsigned char *present;
-    size_t count;
+    size_t count; // of runs that it has; `put` goes on with it
 
     // Adds the result of run `run`; `commit` makes permanent what was put since the last
     // one.
     status (*put)(struct sweep_store *store, size_t run, const summary *result, fault *f);
     status (*commit)(struct sweep_store *store, fault *f);
 
-    // One quantity of every run of a share, in order: NaN where a run failed, is missing,
-    // or the quantity did not occur. `failed` (may be NULL) receives the number of failed
-    // runs. It takes as long as the share is large.
-    status (*quantity)(struct sweep_store *store, sweep_share share, const char *key,
-                       double *values, size_t *failed, fault *f);
+    // Hands on one quantity, by its key, of every run of a share that it has, in order.
+    // `failed` (may be NULL) receives the number of failed runs among them. It takes as
+    // long as the share is large.
+    status (*values)(struct sweep_store *store, sweep_share share, const char *key,
+                     sweep_value_taker *take, void *context, size_t *failed, fault *f);
 } sweep_store;
+
+// The same of a share of a sweep's run_count runs as values[sweep_share_count], NaN where
+// a run is missing, too.
+status sweep_quantity(sweep_store *store, size_t run_count, sweep_share share,
+                      const char *key, double *values, size_t *failed, fault *f);
 
 // How far a sweep has come.
 typedef struct sweep_progress {

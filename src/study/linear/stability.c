@@ -56,7 +56,8 @@ status linear_growth(const scenario *s, double *growth, fault *f)
 static status find_limit(const linear_survey *y, size_t i, linear_place place,
                          bool by_runs, double *limit, fault *f)
 {
-    double from = y->sweep.axes[0].values[i - 1], to = y->sweep.axes[0].values[i];
+    const sweep_axis *axis = &y->sweep.axes[0];
+    double from = sweep_axis_value(axis, i - 1), to = sweep_axis_value(axis, i);
     const bool stable_at_from = linear_is_stable(by_runs, y->numbers[by_runs][i - 1]);
     const int halvings = by_runs ? RUN_BISECTIONS : BISECTIONS;
     for (int n = 0; n < halvings; n++) {

@@ -398,6 +398,22 @@ static void judge_runs(robust_law *out, const sweep *s, const size_t *runs, size
     find_quantiles(j.of[BACK], n, out->back);
 }
 
+// The runs of a law that there are, and a quantity of each.
+typedef struct law_column {
+    size_t *runs;
+    double *values;
+    size_t count;
+} law_column;
+
+// A sweep_value_taker.
+static bool take_run(void *context, size_t run, double value)
+{
+    law_column *c = context;
+    c->runs[c->count] = run;
+    c->values[c->count++] = value;
+    return true;
+}
+
 status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_share share,
                      sweep_store *store, fault *f)
 {
@@ -407,22 +423,15 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sha
 
     // each quantity of the runs of the share that are there
     SCOPED(free_kept) size_t *runs = calloc(n, sizeof *runs);
-    SCOPED(free_kept) double *column = calloc(n, sizeof *column);
-    SCOPED(free_kept) double *values = calloc(QUANTITIES * n, sizeof *values);
+    SCOPED(free_kept) double *values = calloc(n, QUANTITIES * sizeof *values);
     out->overshoots = calloc(n, sizeof *out->overshoots);
-    if (!(runs != NULL && column != NULL && values != NULL && out->overshoots != NULL)) {
+    if (!(runs != NULL && values != NULL && out->overshoots != NULL)) {
         return fault_no_memory(f);
     }
     for (int q = 0; q < QUANTITIES; q++) {
-        TRY(store->quantity(store, share, keys[q], column, NULL, f));
-        out->runs = 0;
-        for (size_t i = 0; i < n; i++) {
-            const size_t run = sweep_share_run(share, i);
-            if (store->present[run]) {
-                runs[out->runs] = run;
-                values[(size_t)q * n + out->runs++] = column[i];
-            }
-        }
+        law_column column = {runs, values + (size_t)q * n, 0};
+        TRY(store->values(store, share, keys[q], take_run, &column, NULL, f));
+        out->runs = column.count;
     }
     judge_runs(out, s, runs, n, values);
     return STATUS_OK;

@@ -177,7 +177,8 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
 
     // the store may be that of another search: compare the values that it has
     for (int k = 0; k < asked->vary_count; k++) {
-        TRY(store->quantity(store, only.share, t->plan.axes[k].name, column, NULL, f));
+        TRY(sweep_quantity(store, t->plan.run_count, only.share, t->plan.axes[k].name,
+                           column, NULL, f));
         FAULT_IF(!isnan(column[0]) && column[0] != values[k], f, STATUS_BAD_ARGUMENT,
                  "the database is of another search: run %zu has %s = %g, not %g",
                  evaluation + 1, t->plan.axes[k].name, column[0], values[k]);
@@ -194,7 +195,8 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
         TRY(robust_law_of(&out->law, name, &t->plan, only.share, store, f));
     }
     for (int q = 0; q < summary_count && of.law == NULL; q++) {
-        TRY(store->quantity(store, only.share, summary_table[q].key, column, NULL, f));
+        TRY(sweep_quantity(store, t->plan.run_count, only.share, summary_table[q].key,
+                           column, NULL, f));
         run[q] = column[0];
     }
     return judge_result(asked, &of, out, f);

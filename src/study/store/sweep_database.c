@@ -211,10 +211,10 @@ static bool is_outcome(int word, bool failed, sqlite3_stmt *row, int column)
             strcmp(text, "failed") == 0);
 }
 
-// Checks the row that a statement stands on: SQLite lets others write anything into any
-// column.
-static status check_row(const sweep_database *store, sqlite3_stmt *row,
-                        unsigned char *seen, fault *f)
+// Checks the row that a statement stands on, behind that of run *before: SQLite lets
+// others write anything into any column.
+static status check_row(const sweep_database *store, sqlite3_stmt *row, long long *before,
+                        fault *f)
 {
     const sweep *s = store->sweep;
     const long long run = sqlite3_column_int64(row, 0);
@@ -222,8 +222,9 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row,
                  (unsigned long long)run > s->run_count,
              f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu", store->path,
              run, s->run_count);
-    FAULT_IF(seen[run - 1]++, f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice",
+    FAULT_IF(run == *before, f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice",
              store->path, run);
+    *before = run;
 
     // what was put in, as planned
     int column = RUN_FIRST_VALUE;
@@ -294,14 +295,14 @@ static status check_names(const sweep_database *store, sqlite3_stmt *rows,
                      beyond != NULL ? ", which this one does not know" : "");
 }
 
-status database_check_runs(sweep_database *store, unsigned char *seen, size_t *count,
-                           fault *f)
+status database_check_runs(sweep_database *store, size_t *count, fault *f)
 {
     run_column expected[RUN_MOST_COLUMNS];
     const int columns = database_columns(store->sweep, expected);
     sqlite3_stmt *rows;
+    long long before = 0;
     *count = 0;
-    status code = database_prepare(store, &rows, "SELECT * FROM run", f);
+    status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);
     int found = 0;
     if (code == STATUS_OK) {
         found = sqlite3_column_count(rows);
@@ -327,7 +328,7 @@ status database_check_runs(sweep_database *store, unsigned char *seen, size_t *c
 
     // row by row
     while (database_next(store, rows, &code, f)) {
-        code = check_row(store, rows, seen, f);
+        code = check_row(store, rows, &before, f);
         (*count)++;
         if (code != STATUS_OK && sqlite3_errcode(store->database) == SQLITE_NOMEM) {
             code = fault_no_memory(f);

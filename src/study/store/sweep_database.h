@@ -56,9 +56,8 @@ status database_recognise(sweep_database *store, bool *empty, fault *f);
 
 // STATUS_BAD_ARGUMENT unless the table `run` has the columns of store->sweep, in their
 // order, and in each row a run of it, once, with the values that the sweep gives it and
-// finite numbers; marks those in seen[run_count], of zeros, and counts them.
-status database_check_runs(sweep_database *store, unsigned char *seen, size_t *count,
-                           fault *f);
+// finite numbers; counts them.
+status database_check_runs(sweep_database *store, size_t *count, fault *f);
 
 // The columns of the table `run` of a sweep; returns how many.
 int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS]);

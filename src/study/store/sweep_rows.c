@@ -58,70 +58,66 @@ status sweep_store_put(sweep_store *of, size_t run, const summary *result, fault
         code = database_fault(store, f);
     }
     sqlite3_reset(store->insert);
-    of->present[run] |= done;
     of->count += done;
     return code;
 }
 
-status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
-                            double *values, size_t *failed, fault *f)
+status sweep_store_values(sweep_store *of, sweep_share share, const char *key,
+                          sweep_value_taker *take, void *context, size_t *failed,
+                          fault *f)
 {
     sweep_database *store = database_of(of);
     const long long total = (long long)store->sweep->run_count;
-    long long first = 1, step = 1;
-    if (share.parts > 0) {
-        first = share.part;
-        step = share.parts;
-    }
     size_t failures = 0;
     sqlite3_stmt *rows = NULL;
 
-    for (size_t i = 0; i < sweep_share_count(share, store->sweep->run_count); i++) {
-        values[i] = (double)NAN;
-    }
-
     // the rows of a share are looked up one by one
-    char *sql;
-    if (share.parts == 0) {
-        sql = sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key);
-    } else {
-        sql = sqlite3_mprintf(
-            "WITH RECURSIVE part(n) AS (SELECT %lld UNION ALL SELECT n + %lld "
-            "FROM part WHERE n + %lld <= %lld) "
-            "SELECT run, status, \"%w\" FROM run WHERE run IN part",
-            first, step, step, total, key);
+    sqlite3_str *sql = sqlite3_str_new(store->database);
+    if (share.parts > 0) {
+        sqlite3_str_appendf(sql,
+                            "WITH RECURSIVE part(n) AS (SELECT %d UNION ALL SELECT n + "
+                            "%d FROM part WHERE n + %d <= %lld) ",
+                            share.part, share.parts, share.parts, total);
     }
+    sqlite3_str_appendf(sql, "SELECT run, status, \"%w\" FROM run %s ORDER BY run", key,
+                        share.parts > 0 ? "WHERE run IN part" : "");
 
-    // a run that failed, or has no such quantity, stays missing
-    status code;
-    if (sql) {
-        code = database_prepare(store, &rows, sql, f);
-    } else {
-        code = fault_no_memory(f);
-    }
-    while (database_next(store, rows, &code, f)) {
-        long long run = sqlite3_column_int64(rows, 0);
+    // a run that failed, or has no such quantity, has no number
+    status code = database_use(store, sql, &rows, f);
+    bool wanted = true;
+    while (wanted && database_next(store, rows, &code, f)) {
+        const long long run = sqlite3_column_int64(rows, 0);
         const char *ended = (const char *)sqlite3_column_text(rows, 1);
-        if (run < first || run > total || ended == NULL) {
+        if (run < 1 || run > total || ended == NULL) {
             code = fault_set(f, STATUS_BAD_ARGUMENT,
                              "'%s' holds a row that is no run of the sweep",
                              store->path ? store->path : "memory");
             continue;
         }
-        bool ok = strcmp(ended, "failed") != 0;
-        if (!ok) {
-            failures++;
-        }
+        const bool ok = strcmp(ended, "failed") != 0;
+        failures += !ok;
+        double value = (double)NAN;
         if (ok && sqlite3_column_type(rows, 2) != SQLITE_NULL) {
-            values[(run - first) / step] = sqlite3_column_double(rows, 2);
+            value = sqlite3_column_double(rows, 2);
         }
+        wanted = take(context, (size_t)run - 1, value);
     }
 
-    sqlite3_free(sql);
+    // the last row has ended the statement
+    if (!wanted) {
+        sqlite3_finalize(rows);
+    }
     if (failed != NULL) {
         *failed = failures;
     }
     return code;
+}
+
+status sweep_store_quantity(sweep_store *store, sweep_share share, const char *key,
+                            double *values, size_t *failed, fault *f)
+{
+    const size_t run_count = database_of(store)->sweep->run_count;
+    return sweep_quantity(store, run_count, share, key, values, failed, f);
 }
 
 // --- as a table ------------------------------------------------------------------------
@@ -147,7 +143,7 @@ int sweep_store_columns(const sweep *s, result_column columns[SWEEP_COLUMNS])
             columns[count++] = all[i].told;
         }
     }
-    if (some_idle(s)) {
+    if (s->run_count > SWEEP_LOOKED_AT || some_idle(s)) {
         columns[count++] =
             (result_column){"without_effect", "without_effect", "", .kind = RESULT_TEXT};
     }

@@ -152,7 +152,7 @@ static status adopt(sweep_database *store, fault *f)
     definition_stamp(store->sweep, store->stamp);
     if (!empty) {
         TRY(check_definition(store, f));
-        return database_check_runs(store, store->store.present, &store->store.count, f);
+        return database_check_runs(store, &store->store.count, f);
     }
     SCOPED(definition_finish) definition now = {.lines = NULL};
     TRY(definition_init(&now, store->sweep, f));
@@ -222,17 +222,13 @@ status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, 
 
     store->store = (sweep_store){.put = sweep_store_put,
                                  .commit = sweep_store_commit,
-                                 .quantity = sweep_store_quantity};
+                                 .values = sweep_store_values};
     store->sweep = s;
     store->lock = -1;
-    store->store.present = calloc(s->run_count, 1);
-    status code = STATUS_OK;
-    if (store->store.present == NULL) {
-        code = fault_no_memory(f);
-    }
 
     // a plain name that begins with a colon would mean something else to the database
-    if (code == STATUS_OK && path != NULL &&
+    status code = STATUS_OK;
+    if (path != NULL &&
         asprintf(&store->path, "%s%s", path[0] == ':' ? "./" : "", path) < 0) {
         store->path = NULL;
         code = fault_no_memory(f);
@@ -265,7 +261,6 @@ void sweep_store_close(sweep_store *closed)
     if (store->lock >= 0) {
         close(store->lock);
     }
-    free(store->store.present);
     free(store->path);
     free(store);
 }
@@ -379,11 +374,7 @@ static status copy_rows(merging *m, sweep_database *part, fault *f)
     sqlite3_stmt *rows;
     size_t count;
     part->sweep = &m->plan;
-    SCOPED(free_kept) unsigned char *seen = calloc(m->plan.run_count, 1);
-    if (seen == NULL) {
-        return fault_no_memory(f);
-    }
-    TRY(database_check_runs(part, seen, &count, f));
+    TRY(database_check_runs(part, &count, f));
 
     status code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
     while (database_next(part, rows, &code, f)) {

@@ -31,9 +31,12 @@ status sweep_store_commit(sweep_store *store, fault *f)
     __attribute__((warn_unused_result));
 
 // What the store of a sweep does (sweep_run.h): of one more row in the transaction, and
-// of a quantity of a share.
+// of a quantity of a share, one by one or as a column.
 status sweep_store_put(sweep_store *store, size_t run, const summary *result, fault *f)
     __attribute__((warn_unused_result));
+status sweep_store_values(sweep_store *store, sweep_share share, const char *key,
+                          sweep_value_taker *take, void *context, size_t *failed,
+                          fault *f) __attribute__((warn_unused_result));
 status sweep_store_quantity(sweep_store *store, sweep_share share, const char *key,
                             double *values, size_t *failed, fault *f)
     __attribute__((warn_unused_result));
@@ -44,8 +47,10 @@ status sweep_store_quantity(sweep_store *store, sweep_share share, const char *k
 enum { SWEEP_COLUMNS = 1 + SWEEP_MOST_AXES + 2 + SUMMARY_NUMBERS + 1 };
 
 // The columns of a sweep's table, whichever of its runs are there: run, varied values,
-// status, message, the quantities that do not depend on the machine and, where a value
-// of some run has no effect, `without_effect`, the paths of these. Returns how many.
+// status, message, the quantities that do not depend on the machine and `without_effect`,
+// the paths of values without effect: in a table of more than SWEEP_LOOKED_AT runs, of
+// which not all are looked at, and where a value of some run has none. Returns how many.
+enum { SWEEP_LOOKED_AT = 10000 };
 int sweep_store_columns(const sweep *s, result_column columns[SWEEP_COLUMNS]);
 
 // Takes a row of the table, of a run counted from 0; false: no other one is wanted.

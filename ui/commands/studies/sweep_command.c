@@ -63,15 +63,48 @@ static void print_counts(const sweep_order *o, size_t failed, const sweep_progre
     printf("\n");
 }
 
-// A line for each of the first runs.
-static void print_run_list(const sweep *s, const sweep_store *store, const double *values)
+// What is told of the runs that there are: those of the first numbers, and the extremes.
+typedef struct told_runs {
+    size_t run[ROWS_SHOWN];
+    double value[ROWS_SHOWN];
+    int count;
+    size_t smallest, largest; // runs
+    double least, most;       // their values
+    bool occurred;            // in any run
+} told_runs;
+
+// A sweep_value_taker.
+static bool take_told(void *context, size_t run, double value)
 {
-    for (size_t run = 0; run < s->run_count && run < ROWS_SHOWN; run++) {
-        if (store->present[run]) {
-            printf("  %10.5g  ", values[run]);
-            print_run_values(s, run);
-            printf("\n");
-        }
+    told_runs *t = context;
+    if (run < ROWS_SHOWN) {
+        t->run[t->count] = run;
+        t->value[t->count++] = value;
+    }
+
+    // runs in which the quantity did not occur have no value
+    if (!isfinite(value)) {
+        return true;
+    }
+    if (!t->occurred || value < t->least) {
+        t->smallest = run;
+        t->least = value;
+    }
+    if (!t->occurred || value > t->most) {
+        t->largest = run;
+        t->most = value;
+    }
+    t->occurred = true;
+    return true;
+}
+
+// A line for each of the first runs.
+static void print_run_list(const sweep *s, const told_runs *t)
+{
+    for (int i = 0; i < t->count; i++) {
+        printf("  %10.5g  ", t->value[i]);
+        print_run_values(s, t->run[i]);
+        printf("\n");
     }
     if (s->run_count > ROWS_SHOWN) {
         printf("  ... and %zu more (--csv writes all)\n", s->run_count - ROWS_SHOWN);
@@ -79,45 +112,19 @@ static void print_run_list(const sweep *s, const sweep_store *store, const doubl
 }
 
 // One line for the smallest or largest value.
-static void print_extreme(const sweep_order *o, const char *word, const double *values,
+static void print_extreme(const sweep_order *o, const char *word, double value,
                           size_t run)
 {
     const char *unit = summary_table[summary_index(o->quantity)].unit;
-    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], blank_before(unit), unit,
+    printf("  %-9s %.6g%s%s  in run %zu: ", word, value, blank_before(unit), unit,
            run + 1);
     print_run_values(o->sweep, run);
     printf("\n");
 }
 
-// The smallest and the largest value of those that occurred.
-static void print_extremes(const sweep_order *o, const double *values)
-{
-    // runs in which the quantity did not occur have no value
-    const size_t count = o->sweep->run_count, none = count;
-    size_t smallest = none, largest = none;
-    for (size_t run = 0; run < count; run++) {
-        if (!isfinite(values[run])) {
-            continue;
-        }
-        if (smallest == none || values[run] < values[smallest]) {
-            smallest = run;
-        }
-        if (largest == none || values[run] > values[largest]) {
-            largest = run;
-        }
-    }
-
-    if (smallest == none) {
-        printf("  did not occur in any run\n");
-        return;
-    }
-    print_extreme(o, "smallest", values, smallest);
-    print_extreme(o, "largest", values, largest);
-}
-
 // A sweep as text: how many runs, their values, and the extremes.
-static void print_sweep(const sweep_order *o, const sweep_store *store,
-                        const double *values, size_t failed, const sweep_progress *p)
+static void print_sweep(const sweep_order *o, const told_runs *t, size_t failed,
+                        const sweep_progress *p)
 {
     const arguments *a = o->arguments;
     print_counts(o, failed, p);
@@ -126,9 +133,14 @@ static void print_sweep(const sweep_order *o, const sweep_store *store,
     const bool in_file = a->csv != NULL || a->json != NULL || a->parquet != NULL ||
                          a->db != NULL || a->plot != NULL;
     if (!in_file) {
-        print_run_list(o->sweep, store, values);
+        print_run_list(o->sweep, t);
     }
-    print_extremes(o, values);
+    if (!t->occurred) {
+        printf("  did not occur in any run\n");
+        return;
+    }
+    print_extreme(o, "smallest", t->least, t->smallest);
+    print_extreme(o, "largest", t->most, t->largest);
 }
 
 // --- files -----------------------------------------------------------------------------
@@ -175,8 +187,14 @@ static int write_sweep_rows(const sweep_order *o, sweep_store *store, const char
     return EXIT_DONE;
 }
 
-static int plot_sweep(const sweep_order *o, const double *values)
+static int plot_sweep(const sweep_order *o, sweep_store *store)
 {
+    g_autofree double *values = g_new(double, o->sweep->run_count);
+    fault f = {0};
+    if (sweep_store_quantity(store, o->share, o->quantity, values, NULL, &f) !=
+        STATUS_OK) {
+        return complain_fault(&f);
+    }
     const sweep_picture shown = {.sweep = o->sweep, .key = o->quantity, .values = values};
     return publish_owned(o->arguments, drawing()->sweep_figure_create(&shown));
 }
@@ -186,10 +204,10 @@ static int plot_sweep(const sweep_order *o, const double *values)
 static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_progress *p)
 {
     const arguments *a = o->arguments;
-    g_autofree double *values = g_new(double, o->sweep->run_count);
+    told_runs told = {.count = 0};
     size_t failed = 0;
     fault f = {0};
-    if (sweep_store_quantity(store, o->share, o->quantity, values, &failed, &f) !=
+    if (sweep_store_values(store, o->share, o->quantity, take_told, &told, &failed, &f) !=
         STATUS_OK) {
         return complain_fault(&f);
     }
@@ -199,10 +217,10 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     result = worse(result, write_sweep_rows(o, store, a->json, ROWS_JSON));
     result = worse(result, write_sweep_rows(o, store, a->parquet, ROWS_PARQUET));
     if (a->plot != NULL) {
-        result = worse(result, plot_sweep(o, values));
+        result = worse(result, plot_sweep(o, store));
     }
     if (summary_wanted(a)) {
-        print_sweep(o, store, values, failed, p);
+        print_sweep(o, &told, failed, p);
     }
 
     // runs that failed now, or before
@@ -230,7 +248,7 @@ static int read_share(const arguments *a, sweep_share *share)
     }
 
     // which part of how many
-    if (sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 ||
+    if (sscanf(a->part, "%9d/%9d%c", &share->part, &share->parts, &rest) != 2 ||
         share->part < 1 || share->parts < share->part) {
         return complain("--part '%.40s' is no part, expected K/N with K from 1 to N",
                         a->part);
@@ -252,7 +270,8 @@ static int read_share(const arguments *a, sweep_share *share)
 
 // Makes the sweep that the command line asks for. One that cannot be, or that could not
 // be drawn, is refused before it computes.
-static status plan_sweep(const arguments *a, const scenario *base, sweep *s, fault *f)
+static status plan_sweep(const arguments *a, const scenario *base, sweep_share share,
+                         sweep *s, fault *f)
 {
     const char *sampling = "grid";
     if (a->sampling != NULL) {
@@ -264,7 +283,8 @@ static status plan_sweep(const arguments *a, const scenario *base, sweep *s, fau
                                    .sampling =
                                        (sweep_sampling)sweep_sampling_find(sampling),
                                    .runs = (size_t)a->runs,
-                                   .seed = a->seed};
+                                   .seed = a->seed,
+                                   .share = share};
     TRY(sweep_init(s, base, &request, f));
 
     // a parameter that no run takes is refused
@@ -355,7 +375,7 @@ static int sweep_and_report(const arguments *a, scenario *base)
     SCOPED(sweep_finish) sweep s = {0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
     fault f = {0};
-    if (plan_sweep(a, base, &s, &f) != STATUS_OK ||
+    if (plan_sweep(a, base, o.share, &s, &f) != STATUS_OK ||
         sweep_store_open(&store, a->db, &s, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
