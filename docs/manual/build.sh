@@ -18,7 +18,7 @@ trap 'rm -rf "$work"' EXIT
 
 # one reader's way: first steps, tasks, what is what, why, and how it is made; then what is left
 mapfile -t pages < <(cd "$source/docs" &&
-    { ls -U start.md howto/{walk,arm,wall,plot,data,sweep,controller,library,fmu,scenes,lab,web}.md faq.md glossary.md \
+    { ls -U start.md howto/{walk,arm,wall,plot,data,sweep,cluster,controller,library,fmu,scenes,lab,web}.md faq.md glossary.md \
           reference/{scenario,laws,recipes}.md explanation/{model,trust,methods,control-design,thesis}.md \
           contributors/{architecture,testing,speed}.md
       find . -name '*.md' ! -path './matplotlib/*' | sed 's|^\./||' | sort; } 2>/dev/null |
