@@ -34,7 +34,8 @@
 
 enum {
     MOST_STEPS = 60,     // of a minimisation
-    PARTS = 4,           // in which a search takes the traces
+    PARTS = 4,           // in which a search takes the traces at least,
+    MOST_PARTS = 12,     // and at most
     SCENARIOS_STARTS = 2 // with the scenario's parameters
 };
 
@@ -129,6 +130,41 @@ static status minimise(search *s, double tolerance, double *x, double *squares)
 }
 #endif
 
+// --- parts of the traces --------------------------------------------------------------
+
+// The trace with the most touches.
+static const recorded_trace *trace_of_most_touches(const identification *id)
+{
+    const recorded_trace *most = &id->traces[0];
+    for (int k = 1; k < id->trace_count; k++) {
+        if (id->traces[k].contact_count > most->contact_count) {
+            most = &id->traces[k];
+        }
+    }
+    return most;
+}
+
+// Lists the shares of the traces that a search compares one after the other, each with
+// one touch more, or with some more where there are many: they end in the middle between
+// two touches of the trace that has the most. Of few touches they are equal parts.
+// Returns how many.
+static int list_parts(const identification *id, double parts[MOST_PARTS])
+{
+    const recorded_trace *t = trace_of_most_touches(id);
+    const double end = t->time[t->rows - 1];
+    const int step = (t->contact_count + MOST_PARTS - 1) / MOST_PARTS;
+    int count = 0;
+    for (int i = step; t->contact_count >= PARTS && i < t->contact_count; i += step) {
+        parts[count++] = (t->contacts[i - 1] + t->contacts[i]) / 2 / end;
+    }
+    while (t->contact_count < PARTS && count < PARTS - 1) {
+        count++;
+        parts[count - 1] = (double)count / PARTS;
+    }
+    parts[count++] = 1;
+    return count;
+}
+
 // --- starts ----------------------------------------------------------------------------
 
 // Sets the unknowns x to start from: the scenario's parameters, and for each trace its
@@ -183,7 +219,9 @@ static status draw_start(search *s, double *x)
         begin_with(id, offset_unknown, s->sets + k * n);
         draw_parameters(s, s->sets + k * n);
     }
-    id->part = 1.0 / PARTS;
+    double parts[MOST_PARTS];
+    list_parts(id, parts);
+    id->part = parts[0];
     TRY(identify_evaluate(id, s->sets, IDENTIFY_SCREENED, NULL, judge, s->set_residuals,
                           NULL, s->f));
     for (size_t k = 0; k < IDENTIFY_SCREENED; k++) {
@@ -201,8 +239,10 @@ static status draw_start(search *s, double *x)
 // Minimises over the first part of the traces, then over more and more of them.
 static status minimise_in_parts(search *s, double *x, double *squares)
 {
-    for (int part = 1; part < PARTS; part++) {
-        s->id->part = (double)part / PARTS;
+    double parts[MOST_PARTS];
+    const int count = list_parts(s->id, parts);
+    for (int i = 0; i < count - 1; i++) {
+        s->id->part = parts[i];
         TRY(minimise(s, TOLERANCE_PART, x, squares));
     }
     s->id->part = 1;

@@ -73,7 +73,7 @@ static void find_touches(recorded_trace *t, const parameters *p, unsigned char *
 {
     const int channel = identify_force_channel(t);
     const double *force = t->reading[channel], threshold = p->control.contact_threshold;
-    double released = -HUGE_VAL, range;
+    double left = -HUGE_VAL, range; // since when it is off the wall, or on it
     bool dithered, flew = true;
     const double noise = identify_deviation(&p->sensor, channel, &range, &dithered);
     size_t before = t->rows; // the last reading; none yet
@@ -92,13 +92,14 @@ static void find_touches(recorded_trace *t, const parameters *p, unsigned char *
             continue;
         }
 
-        // a touch soon after a release is no touch of its own
+        // A touch soon after a release is no touch of its own: the readings between have
+        // to show a flight so long that it is one in the run, too.
         const double change = (t->time[last] + t->time[i]) / 2;
-        if (touches && flew && change - released > IDENTIFY_GUARD) {
+        if (touches && flew && t->time[last] - left > IDENTIFY_GUARD) {
             t->contact_width[t->contact_count] = t->time[i] - t->time[last];
             t->contacts[t->contact_count++] = change;
         }
-        released = change;
+        left = t->time[i];
         flew = false;
 
         // the samples before the change, and those after it
