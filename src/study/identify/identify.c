@@ -92,11 +92,9 @@ static void take_noise_from_residuals(identification *id)
         double squares = 0, count = 0;
         for (int k = 0; k < id->trace_count; k++) {
             const recorded_trace *t = &id->traces[k];
-            for (size_t i = 0; !isnan(t->rms[c]) && i < t->rows; i++) {
-                if (t->deviation[c][i] > 0) {
-                    squares += t->rms[c] * t->rms[c];
-                    count++;
-                }
+            if (!isnan(t->rms[c])) {
+                squares += t->independent[c] * t->rms[c] * t->rms[c];
+                count += t->independent[c];
             }
         }
 

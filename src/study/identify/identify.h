@@ -84,8 +84,10 @@ typedef struct recorded_trace {
     double *time;                        // since then [s]
     double *command;                     // [V]
     double *reading[CHANNELS];           // in the signal's unit, NULL: not recorded
-    double *deviation[CHANNELS]; // standard deviation of each in its residual's unit, 0:
-                                 // left out
+    double *deviation[CHANNELS];  // standard deviation of each in its residual's unit, 0:
+                                  // left out
+    double independent[CHANNELS]; // readings that are compared, where samples that repeat
+                                  // one count once
     double *contacts; // instants of touches after a flight of at least IDENTIFY_GUARD [s]
     double *contact_width; // between the readings before and after each [s]
     int contact_count;

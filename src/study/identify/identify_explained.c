@@ -89,7 +89,7 @@ static void find_size(const channel_residuals *c, const sensor_parameters *senso
             scatter += apart * apart;
         }
     }
-    t->rms[c->channel] = sqrt(squares / (double)c->count);
+    t->rms[c->channel] = sqrt(squares / t->independent[c->channel]);
     t->rms_unit[c->channel] = sqrt(unit_squares / (double)c->count);
     t->explained[c->channel] = 1 - unit_squares / scatter;
 }
@@ -203,13 +203,19 @@ status identify_explain(identification *id, fault *f)
 
 // --- chi square ------------------------------------------------------------------------
 
-// Chi square has as many degrees of freedom n as there are readings more than unknowns;
-// noise alone gives it the mean n and the standard deviation sqrt(2 n). The residuals
-// include one penalty for each parameter, which is no reading.
+// Chi square has as many degrees of freedom n as there are independent readings more than
+// unknowns; noise alone gives it the mean n and the standard deviation sqrt(2 n).
 double identify_misfit(const identification *id, double *most)
 {
-    const size_t readings = id->residuals - (size_t)id->count;
-    const double freedom = (double)(readings - (size_t)id->unknowns);
+    double freedom = -id->unknowns;
+    for (int k = 0; k < id->trace_count; k++) {
+        const recorded_trace *t = &id->traces[k];
+        freedom += t->contact_count;
+        for (int c = 0; c < CHANNELS; c++) {
+            freedom += t->independent[c];
+        }
+    }
+    freedom = fmax(freedom, 1);
     *most = NOISE_KNOWN * NOISE_KNOWN * (1 + CHANCE * sqrt(2 / freedom));
     return id->chi_square / freedom;
 }

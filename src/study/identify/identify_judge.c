@@ -150,7 +150,7 @@ static double white_square(const identification *id, int channel)
     double squares = 0, count = 0;
     for (int k = 0; k < id->trace_count; k++) {
         const recorded_trace *t = &id->traces[k];
-        const double of_trace = (double)residuals_of_channel(t, channel);
+        const double of_trace = t->independent[channel];
         if (of_trace > 0 && !(t->whiteness[channel] < IDENTIFY_WHITE)) {
             return (double)NAN;
         }

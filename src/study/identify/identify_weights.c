@@ -156,6 +156,7 @@ static status weigh_channel(recorded_trace *t, int c, const parameters *p,
             } else {
                 const size_t shared = slow ? 1 : end - i;
                 t->deviation[c][k] = deviation * sqrt((double)shared);
+                t->independent[c] += 1 / (double)shared;
                 t->residuals++;
             }
             t->uses[c][use]++;
