@@ -255,6 +255,10 @@ double identify_deviation(const sensor_parameters *s, int channel, double *range
 // the trace's contacts, deviations, uses and number of residuals. STATUS_NO_MEMORY.
 status identify_weigh(recorded_trace *t, const parameters *p, fault *f);
 
+// The sum of a[i] b[i].
+double identify_dot(const double *a, const double *b, size_t count);
+// Adds factor times a to `to`.
+void identify_add_scaled(double *to, double factor, const double *a, size_t count);
 // The value of the range to search that is nearest to another.
 double identify_within_range(const fitted_parameter *fit, double value);
 

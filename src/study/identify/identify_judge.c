@@ -15,7 +15,7 @@
 
 // --- sums ------------------------------------------------------------------------------
 
-static double dot(const double *a, const double *b, size_t count)
+double identify_dot(const double *a, const double *b, size_t count)
 {
     double sum = 0;
     for (size_t i = 0; i < count; i++) {
@@ -24,7 +24,7 @@ static double dot(const double *a, const double *b, size_t count)
     return sum;
 }
 
-static void add_scaled(double *to, double factor, const double *a, size_t count)
+void identify_add_scaled(double *to, double factor, const double *a, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         to[i] += factor * a[i];
@@ -50,7 +50,7 @@ static bool orthogonalise(const identification *id, const double *jacobian, doub
     // products of the traces' own columns, each of size 1, and their eigenvectors
     for (int i = 0; i < q; i++) {
         const double *column = own_columns + (size_t)i * m;
-        const double square = dot(column, column, m);
+        const double square = identify_dot(column, column, m);
         if (square > 0) {
             size[i] = sqrt(square);
         } else {
@@ -58,7 +58,8 @@ static bool orthogonalise(const identification *id, const double *jacobian, doub
         }
         for (int j = 0; j <= i; j++) {
             vectors[i * q + j] = vectors[j * q + i] =
-                dot(column, own_columns + (size_t)j * m, m) / (size[i] * size[j]);
+                identify_dot(column, own_columns + (size_t)j * m, m) /
+                (size[i] * size[j]);
         }
     }
     SCOPED(free_kept) double *basis = calloc(m, sizeof *basis);
@@ -74,12 +75,13 @@ static bool orthogonalise(const identification *id, const double *jacobian, doub
         }
         memset(basis, 0, m * sizeof *basis);
         for (int j = 0; j < q; j++) {
-            add_scaled(basis, vectors[k * q + j] / size[j], own_columns + (size_t)j * m,
-                       m);
+            identify_add_scaled(basis, vectors[k * q + j] / size[j],
+                                own_columns + (size_t)j * m, m);
         }
         for (int i = 0; i < p; i++) {
             double *column = alone + (size_t)i * m;
-            add_scaled(column, -dot(column, basis, m) / values[k], basis, m);
+            identify_add_scaled(column, -identify_dot(column, basis, m) / values[k],
+                                basis, m);
         }
     }
     return true;
@@ -299,7 +301,7 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     const int p = id->count;
     double scratch[2 * IDENTIFY_PATHS], values[IDENTIFY_PATHS];
     double scatter[IDENTIFY_PATHS * IDENTIFY_PATHS] = {0};
-    id->chi_square = dot(id->residual, id->residual, id->residuals);
+    id->chi_square = identify_dot(id->residual, id->residual, id->residuals);
     id->aic = id->chi_square + 2 * id->unknowns;
     TRY(identify_explain(id, f));
     if (p == 0) {

@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "src/base/build_config.h"
+#include "src/base/dense.h"
 #include "src/base/random.h"
 #include "src/study/identify/identify.h"
 
@@ -31,6 +32,11 @@
 // Sums of squares of one minimum differ by less than this share and this number.
 #define SAME_SHARE  1e-3
 #define SAME_NUMBER 1.0
+// Mean square of the residuals above which a part of the traces is not explained.
+#define NOT_EXPLAINED 2.0
+// By how many standard deviations sets are drawn around a result, at most.
+#define SPREAD            3.0
+#define LEAST_INFORMATION 100.0 // on a combination of unknowns, in their scales
 
 enum {
     MOST_STEPS = 60,     // of a minimisation
@@ -62,15 +68,6 @@ status identify_available(fault *f)
 #endif
 }
 
-static double sum_of_squares(const double *residual, size_t count)
-{
-    double sum = 0;
-    for (size_t i = 0; i < count; i++) {
-        sum += residual[i] * residual[i];
-    }
-    return sum;
-}
-
 // Keeps a set of unknowns as the best one if its sum of squares, of whole traces, is
 // below the least one so far, or the first one.
 static void keep_least(search *s, const double *x, double squares)
@@ -96,7 +93,7 @@ static int evaluate_for_minpack(void *context, int m, int n, const double *x,
         s->code = identify_jacobian(s->id, x, jacobian, s->f);
     }
     if (s->code == STATUS_OK && wants_residuals) {
-        keep_least(s, x, sum_of_squares(residual, s->id->residuals));
+        keep_least(s, x, identify_dot(residual, residual, s->id->residuals));
     }
     if (s->code == STATUS_OK) {
         return 0;
@@ -119,7 +116,7 @@ static status minimise(search *s, double tolerance, double *x, double *squares)
     lmder(evaluate_for_minpack, s, m, n, x, s->residual, s->jacobian, m, tolerance,
           tolerance, 0, MOST_STEPS, diagonal, 1, 1, 0, &evaluations, &jacobians, pivots,
           work[0], work[1], work[2], work[3], more);
-    *squares = sum_of_squares(s->residual, (size_t)m);
+    *squares = identify_dot(s->residual, s->residual, (size_t)m);
     return s->code;
 }
 #else
@@ -206,26 +203,17 @@ static void draw_parameters(search *s, double *x)
     }
 }
 
-// Draws sets of unknowns, and copies the one with the least sum of squares over the first
-// part of the traces to x.
-static status draw_start(search *s, double *x)
+// Copies the drawn set with the least sum of squares to x.
+static status take_best_set(search *s, double *x)
 {
-    identification *id = s->id;
-    const size_t m = id->residuals, n = (size_t)id->unknowns;
+    const size_t m = s->id->residuals, n = (size_t)s->id->unknowns;
     const bool judge = false;
     double least = HUGE_VAL;
+    TRY(identify_evaluate(s->id, s->sets, IDENTIFY_SCREENED, NULL, judge,
+                          s->set_residuals, NULL, s->f));
     for (size_t k = 0; k < IDENTIFY_SCREENED; k++) {
-        const bool offset_unknown = k % 2 != 0;
-        begin_with(id, offset_unknown, s->sets + k * n);
-        draw_parameters(s, s->sets + k * n);
-    }
-    double parts[MOST_PARTS];
-    list_parts(id, parts);
-    id->part = parts[0];
-    TRY(identify_evaluate(id, s->sets, IDENTIFY_SCREENED, NULL, judge, s->set_residuals,
-                          NULL, s->f));
-    for (size_t k = 0; k < IDENTIFY_SCREENED; k++) {
-        const double squares = sum_of_squares(s->set_residuals + k * m, m);
+        const double squares =
+            identify_dot(s->set_residuals + k * m, s->set_residuals + k * m, m);
         if (squares < least) {
             least = squares;
             memcpy(x, s->sets + k * n, n * sizeof *x);
@@ -234,16 +222,103 @@ static status draw_start(search *s, double *x)
     return STATUS_OK;
 }
 
+// Draws sets of unknowns, and copies the one with the least sum of squares over the first
+// part of the traces to x.
+static status draw_start(search *s, double *x)
+{
+    identification *id = s->id;
+    const size_t n = (size_t)id->unknowns;
+    for (size_t k = 0; k < IDENTIFY_SCREENED; k++) {
+        const bool offset_unknown = k % 2 != 0;
+        begin_with(id, offset_unknown, s->sets + k * n);
+        draw_parameters(s, s->sets + k * n);
+    }
+    double parts[MOST_PARTS];
+    list_parts(id, parts);
+    id->part = parts[0];
+    return take_best_set(s, x);
+}
+
 // --- searches --------------------------------------------------------------------------
+
+// The mean square of the residuals that are compared: those behind a part are 0.
+static double mean_square(const search *s, double squares)
+{
+    double count = 0;
+    for (size_t i = 0; i < s->id->residuals; i++) {
+        if (s->residual[i] != 0) {
+            count++;
+        }
+    }
+    return squares / fmax(count, 1);
+}
+
+// Draws sets of unknowns around x from what the part that was compared last leaves open:
+// along each eigenvector v of J'J, J being the Jacobian and l the eigenvalue, SPREAD
+// standard deviations 1/sqrt(l) or less. Copies the one with the least sum of squares
+// over the next part to x.
+static status draw_around(search *s, double next_part, double *x)
+{
+    identification *id = s->id;
+    const size_t m = id->residuals, n = (size_t)id->unknowns;
+    double products[IDENTIFY_UNKNOWNS * IDENTIFY_UNKNOWNS], values[IDENTIFY_UNKNOWNS];
+    double scratch[2 * IDENTIFY_UNKNOWNS];
+    TRY(identify_jacobian(id, x, s->jacobian, s->f));
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+            products[i * n + j] =
+                identify_dot(s->jacobian + i * m, s->jacobian + j * m, m);
+        }
+    }
+    FAULT_IF(!symmetric_eigen((int)n, products, values, scratch), s->f, STATUS_SINGULAR,
+             "the unknowns' errors cannot be computed");
+    for (size_t k = 0; k < IDENTIFY_SCREENED; k++) {
+        double *set = s->sets + k * n;
+        memcpy(set, x, n * sizeof *x);
+        for (size_t e = 0; e < n; e++) {
+            const double deviations = SPREAD * (2 * random_uniform(&s->random) - 1);
+            const double along = deviations / sqrt(fmax(values[e], LEAST_INFORMATION));
+            identify_add_scaled(set, along, products + e * n, n);
+        }
+    }
+    id->part = next_part;
+    return take_best_set(s, x);
+}
+
+// Minimises over one more part of the traces. Where that loses what explained the part
+// before, a touch that comes with it was taken for another one, or missed: then from the
+// best of sets drawn around the result before it.
+static status minimise_next_part(search *s, double part, double *x, double *mean)
+{
+    identification *id = s->id;
+    const double part_before = id->part, mean_before = *mean;
+    double before[IDENTIFY_UNKNOWNS], squares;
+    memcpy(before, x, sizeof before);
+    id->part = part;
+    TRY(minimise(s, TOLERANCE_PART, x, &squares));
+    *mean = mean_square(s, squares);
+    if (mean_before > NOT_EXPLAINED || *mean < NOT_EXPLAINED) {
+        return STATUS_OK;
+    }
+
+    double other;
+    id->part = part_before;
+    TRY(draw_around(s, part, before));
+    TRY(minimise(s, TOLERANCE_PART, before, &other));
+    if (other < squares) {
+        *mean = mean_square(s, other);
+        memcpy(x, before, sizeof before);
+    }
+    return STATUS_OK;
+}
 
 // Minimises over the first part of the traces, then over more and more of them.
 static status minimise_in_parts(search *s, double *x, double *squares)
 {
-    double parts[MOST_PARTS];
+    double parts[MOST_PARTS], mean = HUGE_VAL;
     const int count = list_parts(s->id, parts);
     for (int i = 0; i < count - 1; i++) {
-        s->id->part = parts[i];
-        TRY(minimise(s, TOLERANCE_PART, x, squares));
+        TRY(minimise_next_part(s, parts[i], x, &mean));
     }
     s->id->part = 1;
     return minimise(s, TOLERANCE_WHOLE, x, squares);
@@ -274,7 +349,7 @@ static status search_from_starts(search *s)
     const bool offset_unknown = false, judge = false;
     begin_with(id, offset_unknown, x);
     TRY(identify_evaluate(id, x, 1, NULL, judge, s->residual, NULL, s->f));
-    keep_least(s, x, sum_of_squares(s->residual, id->residuals));
+    keep_least(s, x, identify_dot(s->residual, s->residual, id->residuals));
 
     double least = (double)NAN; // of the minima
     while (id->searches < id->starts && id->reached < IDENTIFY_CONFIRMED) {
