@@ -139,10 +139,12 @@ static void rest_at(const observer_design *d, double angle, double *z)
 static void fly(const observer_design *d, double *z, double torque)
 {
     double next[ESTIMATOR_STATES] = {0};
-    for (int i = 0; i < d->flight_model.n; i++) {
-        next[i] = d->flight_model.b[i] * torque;
-        for (int j = 0; j < d->flight_model.n; j++) {
-            next[i] += d->flight_model.a[i][j] * z[j];
+    sampled_model flight;
+    observer_design_flight(d, &flight);
+    for (int i = 0; i < flight.n; i++) {
+        next[i] = flight.b[i] * torque;
+        for (int j = 0; j < flight.n; j++) {
+            next[i] += flight.a[i][j] * z[j];
         }
     }
     memcpy(z, next, sizeof next);
@@ -173,7 +175,7 @@ TEST(the_plan_does_what_it_says)
 
         // the touch that was wanted
         double tip = 0, force = 0;
-        for (int k = 0; k < d.flight_model.n; k++) {
+        for (int k = 0; k < 2 * d.observer.arm.free.count; k++) {
             tip += q.tip[k] * z[k];
             force += q.force[k] * z[k];
         }

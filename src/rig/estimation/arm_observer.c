@@ -10,6 +10,7 @@
 enum { N = ESTIMATOR_STATES };
 _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES,
                "the states of all modes have room");
+_Static_assert((int)REDUCED_MODES <= (int)MODAL_MOST, "a model has room for all modes");
 
 // Standard deviations of the readings and of what the models leave out.
 #define FORCE_NOISE  0.02 // of the force sensor [N]
@@ -81,43 +82,17 @@ static double add_products(double start, int n, const double *a, const double *b
     return start;
 }
 
-// start + row p row', the variance of row z, for n states; p: their rows of a covariance.
-static double add_variance(double start, int n, const double *row, const double *p)
-{
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            start += row[i] * p[i * N + j] * row[j];
-        }
-    }
-    return start;
-}
-
 // --- the model -------------------------------------------------------------------------
 
 // Samples the equations of the modes over a time h [s]:
 //
 //     a_i'' = -w_i^2 a_i - c_i a_i' + h_i (drive + unknown torque - damping hub rate)
-//
-// `torque` is the index of the unknown torque, the last state.
-static void sample_model(const arm_observer *o, const mode_set *set, int torque, double h,
-                         sampled_model *model)
+static void sample_model(const arm_observer *o, const mode_set *set, double h,
+                         modal_model *model)
 {
-    const int n = set->count;
-    double rate[N][N] = {{0}}, input[N] = {0};
-
-    // modes act on one another only through the damping of the hub
-    for (int i = 0; i < n; i++) {
-        rate[i][n + i] = 1;
-        rate[n + i][i] = -set->square[i];
-        rate[n + i][n + i] = -set->damping[i];
-        for (int j = 0; j < n; j++) {
-            rate[n + i][n + j] -= o->hub_damping * set->hub[i] * set->hub[j];
-        }
-
-        // an unknown torque drives them as the known one does
-        rate[n + i][torque] = input[n + i] = set->hub[i];
-    }
-    sampled_model_init(model, torque + 1, rate, input, h);
+    const modal_motion of = {set->count, set->square, set->damping, set->hub,
+                             o->hub_damping};
+    modal_model_init(model, &of, h);
 }
 
 const char *arm_observer_init(arm_observer *o, const controller_setup *setup,
@@ -139,9 +114,8 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup,
     o->stiff_nominal = STIFF_GUESS * force * force;
     for (int k = 0; k < 2; k++) {
         double h = k == 0 ? o->delay : o->period - o->delay;
-        sample_model(o, &o->arm.free, 2 * o->arm.free.count, h, &o->free_model[k]);
-        sample_model(o, &o->arm.contact, 2 * o->arm.contact.count + 1, h,
-                     &o->contact_model[k]);
+        sample_model(o, &o->arm.free, h, &o->free_model[k]);
+        sample_model(o, &o->arm.contact, h, &o->contact_model[k]);
     }
     return NULL;
 }
@@ -306,7 +280,7 @@ static void process_noise(const arm_observer *o, const estimator *e, double h,
 }
 
 // Moves an estimate on by a time h [s] under a command that is in effect [V].
-static void predict_state(const arm_observer *o, estimator *e, const sampled_model *model,
+static void predict_state(const arm_observer *o, estimator *e, const modal_model *model,
                           double h, double voltage)
 {
     const double drive = o->torque_per_volt * voltage;
@@ -314,19 +288,20 @@ static void predict_state(const arm_observer *o, estimator *e, const sampled_mod
     process_noise(o, e, h, noise);
 
     const double net = drive - friction_under(o, e, drive);
+    const int n = state_count(o);
     if (!o->touches) {
-        estimator_predict(e, model, net, noise);
+        estimator_predict(e, n, model, net, noise);
         return;
     }
 
     // The first mode's stiffness differs from the nominal one by (stiffness - 1) w^2. Its
     // force on the coordinate at the beginning, held over h, changes the rate by that
     // times h and the coordinate by that times h^2/2.
-    sampled_model corrected = *model;
+    modal_model corrected = *model;
     const double rate_change = (o->stiffness - 1) * o->arm.contact.square[0] * h;
-    corrected.a[o->arm.contact.count][0] -= rate_change;
-    corrected.a[0][0] -= rate_change * h / 2;
-    estimator_predict(e, &corrected, net, noise);
+    corrected.keep[0][1][0] -= rate_change;
+    corrected.keep[0][0][0] -= rate_change * h / 2;
+    estimator_predict(e, n, &corrected, net, noise);
 }
 
 // Takes a reading of row z + offset with a standard deviation into the estimate, and adds
@@ -338,21 +313,20 @@ static double take_reading(arm_observer *o, const double *row, double offset,
     const int n = state_count(o);
 
     // the prediction error in standard deviations of estimate and reading together
-    const double expected = add_products(offset, n, row, o->e.z);
-    const double variance = add_variance(deviation * deviation, n, row, &o->e.p[0][0]);
-    const double distance = fabs(reading - expected) / sqrt(variance);
+    const estimator_view view = estimator_look(&o->e, n, row, offset);
+    const double miss = reading - view.expected;
+    const double distance = fabs(miss) / sqrt(deviation * deviation + view.variance);
 
     // -2 log likelihood by Student's distribution; the estimate's own variance is left
     // out, as a model is no better for claiming less of it
     if (o->moves) {
-        const double error = (reading - expected) / deviation;
+        const double error = miss / deviation;
         o->missed += (TAILS + 1) * plain_log(1 + error * error / TAILS);
     }
 
     // beyond the limit the weight falls with the distance
     const double doubt = distance > OUTLIER ? distance / OUTLIER : 1;
-    estimator_correct(&o->e, n, row, offset, reading,
-                      deviation * deviation * doubt * doubt);
+    estimator_correct(&o->e, n, &view, reading, deviation * deviation * doubt * doubt);
     return 1 / doubt;
 }
 
@@ -482,11 +456,12 @@ static void doubt_tip(const arm_observer *o, estimator *e)
 static bool struck(const arm_observer *o, const hub_sensors *s,
                    const controller_input *in)
 {
-    const double *hub = o->arm.free.hub;
-    const int n = o->arm.free.count;
-    const double error = add_products(-in->tachometer, n, hub, o->e.z + n);
-    const double variance = add_variance(s->rate_variance, n, hub, &o->e.p[n][n]);
-    return error * error > OUTLIER * OUTLIER * variance;
+    const mode_set *free = &o->arm.free;
+    double rate[N] = {0};
+    memcpy(rate + free->count, free->hub, (size_t)free->count * sizeof *rate);
+    const estimator_view view = estimator_look(&o->e, state_count(o), rate, 0);
+    const double error = in->tachometer - view.expected;
+    return error * error > OUTLIER * OUTLIER * (view.variance + s->rate_variance);
 }
 
 // Moves the estimate from the sample before to this one, first under the old command,
@@ -494,7 +469,7 @@ static bool struck(const arm_observer *o, const hub_sensors *s,
 static void follow_motion(arm_observer *o, const hub_sensors *s,
                           const controller_input *in)
 {
-    const sampled_model *models = o->touches ? o->contact_model : o->free_model;
+    const modal_model *models = o->touches ? o->contact_model : o->free_model;
     if (o->delay > 0) {
         predict_state(o, &o->e, &models[0], o->delay, o->last_voltage);
     }

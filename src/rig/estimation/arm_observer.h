@@ -20,7 +20,7 @@ typedef struct arm_observer {
     double period, delay;   // [s]
     // either state over the delay of a command, with the one before in effect, and over
     // the rest
-    sampled_model free_model[2], contact_model[2];
+    modal_model free_model[2], contact_model[2];
     bool touches;        // the tip is at the wall
     bool young;          // and for so short a time that it may have bounced off unseen
     estimator e;         // the estimate

@@ -104,45 +104,128 @@ static inline void multiply_states(int rows, int inner, int columns, double *out
     }
 }
 
-void estimator_predict(estimator *e, const sampled_model *m, double u,
-                       const double *noise)
-{
-    const int n = m->n;
-    matrix ap;
-    sampled_model_step(m, e->z, u);
+// --- modes -----------------------------------------------------------------------------
 
-    // P = A P A' + noise
-    multiply_states(n, n, n, ap[0], m->a[0], false, e->p[0], false);
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            e->p[i][j] = i == j ? noise[i] : 0;
-            for (int k = 0; k < n; k++) {
-                e->p[i][j] += ap[i][k] * m->a[j][k];
-            }
+void modal_model_init(modal_model *m, const modal_motion *of, double h)
+{
+    assert(of->modes <= MODAL_MOST);
+    memset(m, 0, sizeof *m);
+    m->modes = of->modes;
+    for (int i = 0; i < of->modes; i++) {
+        // each mode with its own part of the damper
+        const double hub = of->hub[i], own = of->hub_damping * hub;
+        const double input[N] = {0, hub};
+        double rate[N][N] = {{0, 1}, {-of->square[i], -of->damping[i] - own * hub}};
+        sampled_model one;
+        sampled_model_init(&one, 2, rate, input, h);
+        for (int k = 0; k < 2; k++) {
+            m->gain[i][k] = one.b[k];
+            m->keep[i][k][0] = one.a[k][0];
+            // which modal_model_step and estimator_predict count once more
+            m->keep[i][k][1] = one.a[k][1] + one.b[k] * own;
         }
+        m->damper[i] = -own;
     }
 }
 
-void estimator_correct(estimator *e, int n, const double *row, double offset,
-                       double reading, double variance)
+void modal_model_step(const modal_model *m, double *z, double u)
 {
-    double spread[N], expected = offset, total = variance;
+    const int modes = m->modes;
+    for (int i = 0; i < modes; i++) {
+        u += m->damper[i] * z[modes + i];
+    }
+    for (int i = 0; i < modes; i++) {
+        const double a = z[i], rate = z[modes + i];
+        z[i] = m->keep[i][0][0] * a + m->keep[i][0][1] * rate + m->gain[i][0] * u;
+        z[modes + i] = m->keep[i][1][0] * a + m->keep[i][1][1] * rate + m->gain[i][1] * u;
+    }
+}
 
-    // P row', the reading expected, and its variance row P row' + variance
+// --- the filter ------------------------------------------------------------------------
+
+void estimator_predict(estimator *e, int n, const modal_model *m, double u,
+                       const double *noise)
+{
+    const int modes = m->modes, torque = n - 1;
+
+    // the torque is u + c z: its covariance P c' with the states, and its variance
+    double with[N] = {0};
     for (int i = 0; i < n; i++) {
-        spread[i] = 0;
-        for (int j = 0; j < n; j++) {
-            spread[i] += e->p[i][j] * row[j];
+        with[i] = e->p[torque][i];
+        for (int j = 0; j < modes; j++) {
+            with[i] += m->damper[j] * e->p[modes + j][i];
         }
-        expected += row[i] * e->z[i];
-        total += row[i] * spread[i];
+    }
+    double variance = with[torque];
+    for (int j = 0; j < modes; j++) {
+        variance += m->damper[j] * with[modes + j];
+    }
+    modal_model_step(m, e->z, u + e->z[torque]);
+
+    // K P K', and the same of the covariance with the torque, K the modes' own motion
+    for (int i = 0; i < modes; i++) {
+        const double(*k)[2] = m->keep[i];
+        for (int j = 0; j < n; j++) {
+            const double a = e->p[i][j], rate = e->p[modes + i][j];
+            e->p[i][j] = k[0][0] * a + k[0][1] * rate;
+            e->p[modes + i][j] = k[1][0] * a + k[1][1] * rate;
+        }
+        const double a = with[i], rate = with[modes + i];
+        with[i] = k[0][0] * a + k[0][1] * rate + m->gain[i][0] * variance / 2;
+        with[modes + i] = k[1][0] * a + k[1][1] * rate + m->gain[i][1] * variance / 2;
+    }
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < modes; i++) {
+            const double(*k)[2] = m->keep[i];
+            const double a = e->p[j][i], rate = e->p[j][modes + i];
+            e->p[j][i] = k[0][0] * a + k[0][1] * rate;
+            e->p[j][modes + i] = k[1][0] * a + k[1][1] * rate;
+        }
     }
 
-    // gain P row' / total
-    for (int i = 0; i < n; i++) {
-        e->z[i] += spread[i] / total * (reading - expected);
+    // and what the torque adds: g q' + q g' with q = K P c' + g c P c'/2
+    for (int i = 0; i < modes; i++) {
         for (int j = 0; j < n; j++) {
-            e->p[i][j] -= spread[i] * spread[j] / total;
+            for (int k = 0; k < 2; k++) {
+                const double added = m->gain[i][k] * with[j];
+                e->p[k * modes + i][j] += added;
+                e->p[j][k * modes + i] += added;
+            }
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        e->p[i][i] += noise[i];
+    }
+}
+
+estimator_view estimator_look(const estimator *e, int n, const double *row, double offset)
+{
+    estimator_view view = {.expected = offset};
+    for (int j = 0; j < n; j++) {
+        if (row[j] != 0) {
+            view.expected += row[j] * e->z[j];
+            for (int i = 0; i < n; i++) {
+                view.spread[i] += e->p[j][i] * row[j];
+            }
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        view.variance += row[i] * view.spread[i];
+    }
+    return view;
+}
+
+void estimator_correct(estimator *e, int n, const estimator_view *view, double reading,
+                       double variance)
+{
+    // gain P row'/(row P row' + variance)
+    const double share = 1 / (view->variance + variance);
+    const double error = share * (reading - view->expected);
+    for (int i = 0; i < n; i++) {
+        const double spread = view->spread[i], less = share * spread;
+        e->z[i] += spread * error;
+        for (int j = 0; j < n; j++) {
+            e->p[i][j] -= less * view->spread[j];
         }
     }
 }

@@ -21,18 +21,58 @@ void sampled_model_init(sampled_model *m, int n,
 // A state one period on.
 void sampled_model_step(const sampled_model *m, double *z, double u);
 
+// --- modes -----------------------------------------------------------------------------
+
+enum { MODAL_MOST = 5 }; // modes
+
+// Modes under a torque that each feels by its own share h_i, and that a damper turns
+// back,
+//
+//     a_i'' = -w_i^2 a_i - c_i a_i' + h_i (u - damping sum h_j a_j'),
+//
+// over a period. Of the states the coordinates come first, then the rates, and behind
+// them any that stay. Other modes' part of the damper is held over the period.
+typedef struct modal_model {
+    int modes;
+    double keep[MODAL_MOST][2][2]; // of coordinate and rate
+    double gain[MODAL_MOST][2];    // of both by the torque
+    double damper[MODAL_MOST];     // torque by each rate
+} modal_model;
+
+// w^2 [1/s2], c [1/s] and h of every mode, the hub's damping, over h [s].
+typedef struct modal_motion {
+    int modes;
+    const double *square, *damping, *hub;
+    double hub_damping;
+} modal_motion;
+void modal_model_init(modal_model *m, const modal_motion *of, double h);
+
+// Coordinates and rates a period on.
+void modal_model_step(const modal_model *m, double *z, double u);
+
+// --- the filter ------------------------------------------------------------------------
+
 typedef struct estimator {
     double z[ESTIMATOR_STATES];                   // estimate
     double p[ESTIMATOR_STATES][ESTIMATOR_STATES]; // its covariance
 } estimator;
 
-// Estimate and covariance one period on; noise[i]: variance that state i gains meanwhile.
-void estimator_predict(estimator *e, const sampled_model *m, double u,
+// Estimate and covariance of n states one period on; the last state adds to the torque u;
+// noise[i]: variance that state i gains meanwhile.
+void estimator_predict(estimator *e, int n, const modal_model *m, double u,
                        const double *noise);
 
-// Takes in one reading of row z + offset with the given variance.
-void estimator_correct(estimator *e, int n, const double *row, double offset,
-                       double reading, double variance);
+// What an estimate of n states says of row z + offset: the value expected, its variance,
+// and its covariance with every state.
+typedef struct estimator_view {
+    double expected, variance, spread[ESTIMATOR_STATES];
+} estimator_view;
+estimator_view estimator_look(const estimator *e, int n, const double *row,
+                              double offset);
+
+// Takes in a reading of what a view shows, with the variance of the reading.
+void estimator_correct(estimator *e, int n, const estimator_view *view, double reading,
+                       double variance);
 
 // Another view of the state: an estimate of `from` states becomes one of `to` states, t z
 // with the covariance t p t'; t: [to][from].

@@ -25,8 +25,8 @@
 // command whose unit gives a torque [N m]. The states are the coordinates from `first`
 // on, then all rates; with `first` = 1 the angle of the free arm's rotation, on which no
 // force depends, is left out.
-static void command_model(const controller_setup *setup, const mode_set *set, int first,
-                          double torque_per_command, sampled_model *model)
+static void command_model(double hub_damping, double period, const mode_set *set,
+                          int first, double torque_per_command, sampled_model *model)
 {
     const int n = set->count, k = n - first;
     double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}};
@@ -40,11 +40,11 @@ static void command_model(const controller_setup *setup, const mode_set *set, in
         }
         rate[k + i][k + i] = -set->damping[i];
         for (int j = 0; j < n; j++) {
-            rate[k + i][k + j] -= setup->hub_damping * set->hub[i] * set->hub[j];
+            rate[k + i][k + j] -= hub_damping * set->hub[i] * set->hub[j];
         }
         input[k + i] = set->hub[i] * torque_per_command;
     }
-    sampled_model_init(model, k + n, rate, input, setup->period);
+    sampled_model_init(model, k + n, rate, input, period);
 }
 
 // Finds the gains whose feedback makes the least of the integral of twice the energy of
@@ -56,7 +56,8 @@ static bool find_gain(const controller_setup *setup, const mode_set *set, int fi
     const int n = set->count;
     sampled_model model;
     quadratic_cost cost = {.growth = 1};
-    command_model(setup, set, first, setup->torque_per_volt, &model);
+    command_model(setup->hub_damping, setup->period, set, first, setup->torque_per_volt,
+                  &model);
 
     // twice the energy, sum a_i'^2 + w_i^2 a_i^2: of motion, and of bending
     for (int i = 0; i < n; i++) {
@@ -157,16 +158,20 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
         !find_press_gain(d, setup, task->wall_stiffness > 0)) {
         return "the Riccati equation of its gains has no stabilising solution";
     }
-    command_model(setup, &d->observer.arm.free, 0, 1, &d->flight_model);
 
     // the plan is made without damping
-    controller_setup smooth = *setup;
-    mode_set undamped = d->observer.arm.free;
-    smooth.hub_damping = 0;
-    memset(undamped.damping, 0, sizeof undamped.damping);
-    command_model(&smooth, &undamped, 0, 1, &d->plan_model);
+    const mode_set *set = &d->observer.arm.free;
+    const double no_damping[REDUCED_MODES] = {0};
+    const modal_motion smooth = {set->count, set->square, no_damping, set->hub, 0};
+    modal_model_init(&d->plan_model, &smooth, setup->period);
     find_speeds(d, setup, task);
     return NULL;
+}
+
+void observer_design_flight(const observer_design *d, sampled_model *model)
+{
+    const arm_observer *o = &d->observer;
+    command_model(o->hub_damping, o->period, &o->arm.free, 0, 1, model);
 }
 
 // --- the arms that the law holds possible ----------------------------------------------
@@ -194,7 +199,7 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
                                const observer_task *task)
 {
     static const int links[] = {2, 3, 6};
-    static const double masses[] = {0.04, 0.08}; // [kg]
+    static const double masses[] = {0.06}; // [kg]
 
     // steps that leave the frequency of any wall between within a quarter [N/m]
     static const double walls[] = {60, 150, 375, 940};

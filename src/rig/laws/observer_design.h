@@ -15,11 +15,10 @@ typedef struct observer_design {
     double press_gain[ESTIMATOR_STATES];  // in contact [V per unit of state]
     double touch_speed, top_speed;        // of the rotation [rad/s],
     double arrival_speed;                 // of the first touch [rad/s]
-    double ramp_time;           // of a change of speed that leaves no vibration [s],
-    double ramp_edge;           // of which its acceleration rises, and falls [s]
-    double divergence;          // s, with which a wrong force in contact runs away [1/s]
-    sampled_model flight_model; // of the free arm under a torque,
-    sampled_model plan_model;   // and without damping, which the plan moves
+    double ramp_time;       // of a change of speed that leaves no vibration [s],
+    double ramp_edge;       // of which its acceleration rises, and falls [s]
+    double divergence;      // s, with which a wrong force in contact runs away [1/s]
+    modal_model plan_model; // of the free arm without damping, which the plan moves
 } observer_design;
 
 // What the law is to do with the arm of a setup.
@@ -36,6 +35,9 @@ typedef struct observer_task {
 const char *observer_design_init(observer_design *d, const controller_setup *setup,
                                  const observer_task *task);
 
+// Coordinates and rates of its free arm, damped, under a torque [N m].
+void observer_design_flight(const observer_design *d, sampled_model *model);
+
 // --- the arms that the law holds possible ----------------------------------------------
 
 // The arms that the law `observer` holds possible: the arm of its setup, beams of other
@@ -43,7 +45,7 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 // with masses at its tip. Each has an observer and gains of its own. All observers follow
 // the same readings, and the law goes by the arm whose observer predicts them best.
 
-enum { OBSERVER_MOST_ARMS = 11 };
+enum { OBSERVER_MOST_ARMS = 10 };
 
 typedef struct observer_arms {
     observer_design arms[OBSERVER_MOST_ARMS]; // the first is the setup's
@@ -57,7 +59,7 @@ typedef struct observer_arms {
 // Designs for the arm that the setup describes and for those that it may be instead: arms
 // of two, three and six links; a hub on a spring with a sixth of the beam's compliance;
 // walls of 60 to 940 N/m, on which the tip swings slowly enough to be followed; and
-// masses at the tip. An arm of other links whose stiffness at the wall is within a
+// a mass at the tip. An arm of other links whose stiffness at the wall is within a
 // quarter of the given arm's is left out, since readings do not tell the two apart. The
 // law begins with the arm of the setup. NULL, or a sentence that says why that cannot be.
 const char *observer_arms_init(observer_arms *a, const controller_setup *setup,

@@ -9,13 +9,14 @@
 
 // --- an approach that leaves no vibration ----------------------------------------------
 
-// Share of speeding up after which slowing down may begin. Beginning early goes with a
-// brisk start, which shows the law which arm it is on. The angle by which such a plan
-// falls short of the wall is made at the speed of the touch, which takes long where that
-// is slow.
+// Share of speeding up after which slowing down may begin: early where the touch is fast,
+// with a brisk start, which shows the law which arm it is on; late where it is slow, as
+// the angle by which an early plan falls short of the wall is made at that speed.
 #define EARLY      0.3
 #define LATE       0.7
-#define FAST_TOUCH 0.3 // speed from which a touch of two links is fast [rad/s]
+#define LATE_SPEED 0.085 // that share times the speed of the touch, of two links [rad/s]
+// largest speed of the way: of a faster one a wrong model leaves vibration [rad/s]
+#define CRUISE 1.2
 
 // Puts the plan at a uniform rotation without vibration, before both ramps. In a uniform
 // rotation at a speed v [rad/s] each mode has the rate v momentum_i and no deflection.
@@ -70,7 +71,7 @@ double smooth_approach_follow(smooth_approach *p, const observer_design *d)
 
     // the mean torque that this takes, and the arm's motion under it
     torque *= d->observer.arm.inertia / p->period;
-    sampled_model_step(&d->plan_model, p->state, torque);
+    modal_model_step(&d->plan_model, p->state, torque);
     return torque;
 }
 
@@ -102,11 +103,9 @@ void smooth_approach_begin(smooth_approach *p, const observer_design *d, double 
 
     // how early slowing down may begin
     if (!(p->overlap > 0)) {
-        const bool fast = d->observer.arm.free.count == 2 && soft > FAST_TOUCH;
-        if (fast) {
-            p->overlap = EARLY;
-        } else {
-            p->overlap = LATE;
+        p->overlap = LATE;
+        if (d->observer.arm.free.count == 2) {
+            p->overlap = fmax(EARLY, fmin(LATE_SPEED / soft, LATE));
         }
     }
 
@@ -117,7 +116,7 @@ void smooth_approach_begin(smooth_approach *p, const observer_design *d, double 
     //     v o T + soft T/2 + (v - soft) overshoot
     const double room = p->wall_nearest - angle - soft * (T / 2 - overshoot);
     const double cruise =
-        fmax(soft, fmin(d->top_speed, room / (p->overlap * T + overshoot)));
+        fmax(soft, fmin(fmin(d->top_speed, CRUISE), room / (p->overlap * T + overshoot)));
 
     // and the plan for it, at rest
     p->start_angle = angle;
@@ -220,7 +219,7 @@ void quickest_touch_init(quickest_touch *q, const observer_design *d)
     const mode_set *set = &arm->free, *contact = &arm->contact;
     const int n = set->count;
     memset(q, 0, sizeof *q);
-    q->flight = d->flight_model;
+    observer_design_flight(d, &q->flight);
 
     // the rows of the tip's angle and of F: a is the first mode in contact after the
     // touch, and scale its w^2/(h L)
