@@ -46,6 +46,15 @@ if ! grep -qa __asan_init "$program"; then
     libraries=$(LD_TRACE_LOADED_OBJECTS=1 "$program" | grep -c '=>\|ld-linux\|vdso')
     [ "$libraries" -le 14 ] || fail "$libraries libraries are loaded, expected at most 14"
 fi
+if ! grep -qa __asan_init "$program" && command -v valgrind >/dev/null; then
+    for request in help 'check hit.yaml'; do
+        # shellcheck disable=SC2086
+        count=$(env -u LD_LIBRARY_PATH -u MALLOC_PERTURB_ valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" $request 2>&1 >/dev/null |
+            sed -n 's/.*Collected : \([0-9]*\).*/\1/p')
+        [ "${count:-0}" -gt 100000 ] || fail "$request: its instructions are not counted"
+        [ "${count:-0}" -le 3100000 ] || fail "$request takes $count instructions, expected at most 3 100 000"
+    done
+fi
 
 # copied into a folder of its own, as with a build folder that was moved, with its module and without
 mkdir -p "copied/$lib/impactlab"
