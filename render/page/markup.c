@@ -120,7 +120,7 @@ char *text_unit(const char *unit)
             c > unit && (g_ascii_isalpha(c[-1]) || g_ascii_isdigit(c[-1]));
         if (*c == ' ') {
             g_string_append(shown, "\u00b7");
-        } else if (g_ascii_isdigit(*c)) {
+        } else if (g_ascii_isdigit(*c) && c > unit) { // not the 1 of 1/s
             g_string_append(shown, powers[*c - '0']);
         } else if (*c == '-' && after_letter && g_ascii_isdigit(c[1])) {
             g_string_append(shown, "\u207b");

@@ -222,13 +222,15 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
     // gain and phase of each response
     for (int k = 0; k < count; k++) {
         const linear_response *r = &curves[k].response;
+        const char *label =
+            owned_figure_keep(o, g_strdelimit(g_strdup(curves[k].name), "_", ' '));
         const double *frequency = frequencies_of(o, r);
         const double *y[BODE_PANELS] = {
             [GAIN_PANEL] = decibels_of(o, r), [PHASE_PANEL] = phases_of(o, r)};
         for (int panel = 0; panel < BODE_PANELS; panel++) {
             owned_figure_add(o, panel,
-                             (figure_series){curves[k].name, curves[k].name, frequency,
-                                             y[panel], (size_t)r->count,
+                             (figure_series){curves[k].name, label, frequency, y[panel],
+                                             (size_t)r->count,
                                              .colour = palette_slot(k)});
             o->panels[panel].weight = 1.2;
         }

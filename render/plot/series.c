@@ -15,8 +15,9 @@
 #define MOST_TURNS    12   // of a line that is never busy
 #define BUSY_DISTANCE 16.0 // from turn to turn, some three dashes
 
-// Indices of greys in palette_series.
-enum { DARKEST_GREY = 0, LIGHTEST_GREY = 4 };
+// The greys of a panel's busy lines in their order, as palette_series counts them.
+enum { BUSY_GREYS = 3 };
+static const int busy_greys[BUSY_GREYS] = {4, 2, 0};
 
 enum { STYLES = 4 };
 
@@ -75,7 +76,7 @@ static series_pen run_pen(const drawing *d, const figure_series *s)
 }
 
 // The pen of a busy line, in which no pattern would show. Without colours the first busy
-// line of a panel is light and wide, the others are dark.
+// line of a panel is light and wide, of the others each has another grey.
 static series_pen busy_pen(const drawing *d, const panel_layout *l, int index)
 {
     const figure_series *s = &l->panel->series[index];
@@ -85,14 +86,13 @@ static series_pen busy_pen(const drawing *d, const panel_layout *l, int index)
         return pen;
     }
 
-    // dark, unless it is the first busy line of the panel
-    bool first = true;
+    // by its place among the busy lines of the panel
+    int before = 0;
     for (int i = 0; i < index; i++) {
-        first = first && !l->busy[i];
+        before += l->busy[i];
     }
-    pen.ink = palette_series(THEME_MONO, SLOT_BLUE, DARKEST_GREY);
-    if (first) {
-        pen.ink = palette_series(THEME_MONO, SLOT_BLUE, LIGHTEST_GREY);
+    pen.ink = palette_series(THEME_MONO, SLOT_BLUE, busy_greys[before % BUSY_GREYS]);
+    if (before == 0) {
         pen.width *= BUSY_WIDER;
     }
     return pen;

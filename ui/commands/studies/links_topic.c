@@ -136,9 +136,9 @@ static const struct {
     int colour;
     marker_kind marker;
 } curves[LINKS_QUANTITIES] = {
-    {4, MARKER_CIRCLE},   {4, MARKER_SQUARE},  {0, MARKER_CIRCLE},   {3, MARKER_TRIANGLE},
+    {7, MARKER_CIRCLE},   {7, MARKER_SQUARE},  {0, MARKER_CIRCLE},   {3, MARKER_TRIANGLE},
     {3, MARKER_SQUARE},   {3, MARKER_DIAMOND}, {5, MARKER_TRIANGLE}, {2, MARKER_DIAMOND},
-    {1, MARKER_TRIANGLE}, {6, MARKER_SQUARE},  {7, MARKER_CIRCLE},
+    {1, MARKER_TRIANGLE}, {6, MARKER_SQUARE},  {4, MARKER_CROSS},
 };
 
 static const figure_tick link_ticks[LINKS_LENGTHS] = {{2, "2"},   {4, "4"},   {8, "8"},

@@ -140,7 +140,7 @@ static int plot_survey(const arguments *a, const void *found)
     // both as panels of the first one, in which the limit is all that counts
     owned_figure *both = drawn[BY_POLES];
     both->panels[1] = drawn[BY_RUNS]->panels[0];
-    both->panels[0].heading = "linear, without friction: unstable above zero";
+    both->panels[0].heading = "without friction: unstable above 0";
     figure_map with_limit;
     if (both->panels[0].map != NULL) {
         with_limit = *both->panels[0].map;
@@ -153,7 +153,7 @@ static int plot_survey(const arguments *a, const void *found)
         both->panels[0].levels = &limit;
         both->panels[0].level_count = 1;
     }
-    both->panels[1].heading = "runs, with friction: where one has a value it settles";
+    both->panels[1].heading = "with friction: of runs that settle";
     both->figure.panel_count = JUDGEMENTS;
 
     const int result =
