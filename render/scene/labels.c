@@ -133,7 +133,9 @@ void labels_caption(scene *sc, cairo_t *cr, const char *title, const char *facts
 void labels_inset(scene *sc, cairo_t *cr, double left, double bottom, double larger)
 {
     assert(larger > 0);
-    g_autofree char *text = text_printf("contact, %.1f times", larger);
+    const bool touches = sc->scenario->parameters.wall.kind != WALL_NONE;
+    g_autofree char *text =
+        text_printf("%s, %.1f times", touches ? "contact" : "tip", larger);
     const text_block t = fact(sc, text);
     const text_size size = text_measure(sc->context, &t);
     const double room = 5 * labels_scale(sc);
