@@ -21,9 +21,9 @@ void taken_finish(taken_cells *t)
 // Takes the cell of a point [pixels].
 static void take_point(taken_cells *t, double x, double y)
 {
-    const int column = (int)floor(x / CELL), row = (int)floor(y / CELL);
+    const double column = floor(x / CELL), row = floor(y / CELL);
     if (column >= 0 && column < t->across && row >= 0 && row < t->down) {
-        t->filled[row * t->across + column] = 1;
+        t->filled[(int)row * t->across + (int)column] = 1;
     }
 }
 
@@ -47,10 +47,14 @@ void taken_add_mesh(taken_cells *t, const mesh *m, const camera *c)
 {
     for (size_t i = 0; i + 2 < m->corner_count; i += 3) {
         vector corners[3];
+        bool seen = true; // not beside or behind the eye
         for (size_t k = 0; k < 3; k++) {
             corners[k] = camera_project(c, m->vertices[m->corners[i + k]].place);
+            seen = seen && corners[k].z > c->nearest / 2;
         }
-        take_triangle(t, corners);
+        if (seen) {
+            take_triangle(t, corners);
+        }
     }
 }
 
