@@ -233,7 +233,7 @@ REAL(control, reverse_time, "reverse-torque: how long the motor pulls back after
     "s", 0, 10, DEFAULT(0.02), TIMED)
 REAL(control, switch_share, "bang-bang: share of the way to the wall at which the command is "
     "reversed", "", 0, 1, DEFAULT(0.5), TIMED)
-REAL(control, force_limit, "touch, observer, speed-limit: force that is not to be exceeded, 0 "
+REAL(control, force_limit, "touch, observer, speed-limit: limit that the force is to keep, 0 "
     "for none; with one the rig predicts at every sample how hard a touch would be",
     "N", 0, 1000, DEFAULT(0), TIMED)
 REAL(control, travel_time, "inverse-dynamics: how long the tip moves to the wall",
