@@ -1,3 +1,4 @@
+// The table of what draws, by which the program finds it in the module.
 #include "render/drawing.h"
 
 #include "src/base/build_config.h"

@@ -52,8 +52,9 @@ enum {
 #define HYBRID_PARAMETERS                                                                \
     {.name = "force"}, {.name = "approach_voltage"}, {.name = "kp"}, {.name = "kv"},     \
         {.name = "gains"}, {.name = "coefficients"}, {.name = "transition_time"},        \
+        {.name = "contact_threshold"},                                                   \
     {                                                                                    \
-        .name = "contact_threshold"                                                      \
+        .name = "impact_angle"                                                           \
     }
 
 typedef struct hybrid_memory {
@@ -479,37 +480,84 @@ static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
 static const char *const recovering_modes[] = {"approach", "impact", "force", "recover",
                                                NULL};
 
-// The controllers: name and word, modes, what they do before contact and after it, for
-// how long, and their parameters behind the shared ones.
-#define HYBRID_VARIANTS(VARIANT)                                                         \
-    VARIANT(hybrid, "hybrid", hybrid_modes, approach_plainly, follow_quintic,            \
-            TRANSITION, {.name = "impact_angle"})                                        \
-    VARIANT(recovering, "recovering", recovering_modes, approach_again, follow_quintic,  \
-            TRANSITION, {.name = "impact_angle"})                                        \
-    VARIANT(reverse_torque, "reverse-torque", hybrid_modes, approach_plainly, pull_back, \
-            OWN, {.name = "impact_angle"}, {.name = "reverse_time"})                     \
-    VARIANT(speed_limit, "speed-limit", hybrid_modes, approach_within_limits,            \
-            follow_quintic, TRANSITION, {.name = "impact_angle"},                        \
-            {.name = "speed_limit"}, {.name = "force_limit"})                            \
-    VARIANT(bang_bang, "bang-bang", hybrid_modes, approach_fast, follow_quintic,         \
-            TRANSITION, {.name = "impact_angle"}, {.name = "switch_share"})
+// Starts with the parameters that all share; with one of the law's own; with two.
+static const char *start_shared(void *memory, const controller_setup *setup)
+{
+    hybrid_tell(memory, setup, OWN);
+    return NULL;
+}
 
-#define HYBRID_VARIANT(law, word, names, before, after, length, ...)                     \
-    static const controller_parameter law##_parameters[] = {HYBRID_PARAMETERS,           \
-                                                            __VA_ARGS__};                \
-    static const char *law##_start(void *memory, const controller_setup *setup)          \
-    {                                                                                    \
-        hybrid_tell(memory, setup,                                                       \
-                    sizeof law##_parameters / sizeof law##_parameters[0]);               \
-        return NULL;                                                                     \
-    }                                                                                    \
-    static void law##_sample(void *memory, const controller_input *in,                   \
-                             controller_output *out)                                     \
-    {                                                                                    \
-        hybrid_act(memory, in, out, before, after, length);                              \
-    }                                                                                    \
-    const controller law##_law =                                                         \
-        CONTROLLER_LAW(word, names, law##_parameters, hybrid_memory, .lockable = true,   \
-                       .start = law##_start, .sample = law##_sample,                     \
-                       .tune = law##_start);
-HYBRID_VARIANTS(HYBRID_VARIANT)
+static const char *start_with_own(void *memory, const controller_setup *setup)
+{
+    hybrid_tell(memory, setup, OWN + 1);
+    return NULL;
+}
+
+static const char *start_with_two(void *memory, const controller_setup *setup)
+{
+    hybrid_tell(memory, setup, OWN + 2);
+    return NULL;
+}
+
+#define HYBRID_LAW(word, names, table, begin, act)                                       \
+    CONTROLLER_LAW(word, names, table, hybrid_memory, .lockable = true, .start = begin,  \
+                   .sample = act, .tune = begin)
+
+// What each variant does before contact, what after it, and for how long.
+
+static const controller_parameter hybrid_parameters[] = {HYBRID_PARAMETERS};
+
+static void sample_hybrid(void *memory, const controller_input *in,
+                          controller_output *out)
+{
+    hybrid_act(memory, in, out, approach_plainly, follow_quintic, TRANSITION);
+}
+const controller hybrid_law =
+    HYBRID_LAW("hybrid", hybrid_modes, hybrid_parameters, start_shared, sample_hybrid);
+
+static void sample_recovering(void *memory, const controller_input *in,
+                              controller_output *out)
+{
+    hybrid_act(memory, in, out, approach_again, follow_quintic, TRANSITION);
+}
+const controller recovering_law =
+    HYBRID_LAW("recovering", recovering_modes, hybrid_parameters, start_shared,
+               sample_recovering);
+
+static const controller_parameter reverse_torque_parameters[] = {HYBRID_PARAMETERS,
+                                                                 {.name =
+                                                                      "reverse_time"}};
+
+static void sample_reverse_torque(void *memory, const controller_input *in,
+                                  controller_output *out)
+{
+    hybrid_act(memory, in, out, approach_plainly, pull_back, OWN);
+}
+const controller reverse_torque_law =
+    HYBRID_LAW("reverse-torque", hybrid_modes, reverse_torque_parameters, start_with_own,
+               sample_reverse_torque);
+
+static const controller_parameter speed_limit_parameters[] = {HYBRID_PARAMETERS,
+                                                              {.name = "speed_limit"},
+                                                              {.name = "force_limit"}};
+
+static void sample_speed_limit(void *memory, const controller_input *in,
+                               controller_output *out)
+{
+    hybrid_act(memory, in, out, approach_within_limits, follow_quintic, TRANSITION);
+}
+const controller speed_limit_law =
+    HYBRID_LAW("speed-limit", hybrid_modes, speed_limit_parameters, start_with_two,
+               sample_speed_limit);
+
+static const controller_parameter bang_bang_parameters[] = {HYBRID_PARAMETERS,
+                                                            {.name = "switch_share"}};
+
+static void sample_bang_bang(void *memory, const controller_input *in,
+                             controller_output *out)
+{
+    hybrid_act(memory, in, out, approach_fast, follow_quintic, TRANSITION);
+}
+const controller bang_bang_law =
+    HYBRID_LAW("bang-bang", hybrid_modes, bang_bang_parameters, start_with_own,
+               sample_bang_bang);
