@@ -13,7 +13,7 @@ static const char *const about_hubs[] = {"the hub turns, the beam with it"};
 static const search_entry things[] = {
     {"A soft wall", "Walls", about_walls, 2},
     {"The beam", "Arms", about_beams, 2},
-    {"Hub", "Arms", about_hubs, 1},
+    {"Hub", "Arms", about_hubs, 1, "which motor drives it?"},
     {"arm.beam_length", "parameter", NULL, 0},
 };
 
@@ -49,6 +49,12 @@ TEST(compares_without_endings_and_case)
     assert_int_equal(best("SETTLING"), 0);
     assert_int_equal(best("bending"), 1);
     assert_int_equal(best("turned"), 2);
+}
+
+TEST(finds_what_a_thing_says_it_answers)
+{
+    assert_int_equal(best("what motor do I need"), 2);
+    assert_int_equal(best("driving the beam"), 2);
 }
 
 TEST(corrects_misspelt_words)
@@ -122,7 +128,7 @@ static search_entry heading(const void *context, int i)
 {
     (void)context;
     const manual_section s = manual_section_at(i);
-    return (search_entry){s.heading, s.title, s.texts, s.text_count};
+    return (search_entry){s.heading, s.title, s.texts, s.text_count, s.asked};
 }
 
 // A search for the titles of a page's section leads to one that is called so.

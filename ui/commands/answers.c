@@ -25,7 +25,7 @@ static search_entry section_entry(const void *context, int i)
     (void)context;
     const manual_section s = manual_section_at(i);
     const bool aside = strncmp(s.page, "docs/contributors/", 18) == 0;
-    return (search_entry){s.heading, s.title, s.texts, s.text_count, aside};
+    return (search_entry){s.heading, s.title, s.texts, s.text_count, s.asked, aside};
 }
 
 // A parameter with its description, and its words if it is a choice.

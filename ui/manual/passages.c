@@ -6,7 +6,7 @@
 
 // A row of the generated table; its texts are `count` from `first` on.
 struct section {
-    const char *page, *title, *heading;
+    const char *page, *title, *heading, *asked;
     int first, count;
 };
 
@@ -21,5 +21,10 @@ manual_section manual_section_at(int index)
 {
     assert(index >= 0 && index < manual_sections());
     const struct section *s = &sections[index];
-    return (manual_section){s->page, s->title, s->heading, texts + s->first, s->count};
+    return (manual_section){.page = s->page,
+                            .title = s->title,
+                            .heading = s->heading,
+                            .asked = s->asked,
+                            .texts = texts + s->first,
+                            .text_count = s->count};
 }

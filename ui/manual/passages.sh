@@ -1,6 +1,7 @@
 #!/bin/sh
 # The manual's pages as C tables for the search: each heading with the paragraphs, table rows and
-# examples below it, without the marks of Markdown.
+# examples below it, without the marks of Markdown, and the questions that a line
+# <!-- asked: QUESTION? QUESTION? --> below the heading says it answers.
 #
 #   passages.sh SOURCE_ROOT OUTPUT DEPENDENCIES
 #
@@ -59,6 +60,7 @@ awk '
         first[sections] = count
         page[sections] = FILENAME
         title[sections] = page_title
+        asked[sections] = ""
         headings[sections++] = heading
     }
 
@@ -66,6 +68,16 @@ awk '
     FNR == 1 { end_text(); fenced = 0; page_title = "" }
     /^```/ { end_text(); fenced = !fenced; next }
     fenced { text = text " " $0; next }
+    /^<!-- asked: .*-->$/ {
+        if (asked[sections - 1] != "") {
+            print FILENAME ":" FNR ": a second line of questions below one heading" >"/dev/stderr"
+            exit 1
+        }
+        sub(/^<!-- asked: /, "")
+        sub(/ *-->$/, "")
+        asked[sections - 1] = $0
+        next
+    }
     /^<!--.*-->$/ { next }
     /^#+ / {
         sub(/^#+ /, "")
@@ -95,6 +107,6 @@ awk '
         print "    NULL,\n};\n\nstatic const struct section sections[] = {"
         for (i = 0; i < sections; i++)
             print "    {" quoted(page[i]) ", " quoted(title[i]) ", " quoted(headings[i]) ", " \
-                first[i] ", " first[i + 1] - first[i] "},"
+                quoted(asked[i]) ", " first[i] ", " first[i + 1] - first[i] "},"
         print "};"
     }' $pages >"$output"

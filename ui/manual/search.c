@@ -18,7 +18,8 @@ enum { MOST_WORDS = 16, WORD_SIZE = 32, TERMS_SIZE = MOST_WORDS * (WORD_SIZE + 8
 // words, whose points for things and passages stand in `found` and `said`.
 static const char tables[] =
     "BEGIN;CREATE VIRTUAL TABLE thing USING fts5(source UNINDEXED, item UNINDEXED, "
-    "title, above, body, tokenize = 'porter');CREATE VIRTUAL TABLE passage USING "
+    "title, above, body, questions, tokenize = 'porter');CREATE VIRTUAL TABLE passage "
+    "USING "
     "fts5(body, tokenize = 'porter');CREATE VIRTUAL TABLE synonym USING fts5(asked, "
     "meant UNINDEXED, tokenize = 'porter');CREATE VIRTUAL TABLE title USING "
     "fts5(body);CREATE VIRTUAL TABLE spelling USING fts5vocab(title, row);"
@@ -33,9 +34,10 @@ static const char ask_synonyms[] =
     "INSERT INTO asked SELECT ?2, meant, ?3 FROM synonym WHERE synonym MATCH ?1";
 
 // The points of each word's terms are Okapi BM25 (Robertson and Zaragoza 2009), where a
-// word in a title counts as twelve.
+// word in a title counts as twelve, one in a question that the thing answers as four.
 static const char give_points[] =
-    "INSERT INTO found SELECT word, thing.rowid, -weight * bm25(thing, 0, 0, 12, 4, 1) "
+    "INSERT INTO found SELECT word, thing.rowid, -weight * bm25(thing, 0, 0, 12, 4, 1, "
+    "4) "
     "FROM asked CROSS JOIN thing WHERE thing MATCH term;"
     "INSERT INTO said SELECT word, passage.rowid, -weight * bm25(passage) "
     "FROM asked CROSS JOIN passage WHERE passage MATCH term;";
@@ -143,12 +145,16 @@ static void insert_thing(sqlite3_str *script, int source, int item, int thing,
     if (e->aside) {
         title = "";
     }
+    const char *asked = e->asked;
+    if (asked == NULL) {
+        asked = "";
+    }
     sqlite3_str_appendf(
         script,
-        "INSERT INTO thing SELECT %d, %d, %Q, %Q, group_concat(body, ' ') "
+        "INSERT INTO thing SELECT %d, %d, %Q, %Q, group_concat(body, ' '), %Q "
         "FROM passage WHERE rowid >= %d * " PASSAGES ";"
         "INSERT INTO title VALUES (%Q);",
-        source, item, title, e->above, thing, e->title);
+        source, item, title, e->above, asked, thing, e->title);
 }
 
 // The tables of all entries in memory; NULL, and a loss is noted, without memory.

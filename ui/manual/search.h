@@ -10,6 +10,8 @@ typedef struct search_entry {
     const char *above;        // title of what it is part of, "" if of nothing
     const char *const *texts; // paragraphs
     int text_count;
+    const char
+        *asked; // questions that it answers, in readers' words; NULL if none are said
     bool aside; // for few readers: words in its title count as those in its texts
 } search_entry;
 
@@ -53,6 +55,7 @@ typedef struct manual_section {
     const char *page;         // its path in the tree, "docs/start.md"
     const char *title;        // of the page
     const char *heading;      // the page's title at its beginning
+    const char *asked;        // questions that it answers, "" if the page says none
     const char *const *texts; // paragraphs, items, rows of tables, examples
     int text_count;
 } manual_section;
