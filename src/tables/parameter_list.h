@@ -270,7 +270,7 @@ BOOLEAN(sensor, ideal, "switches off every imperfection of sensors and converter
     DEFAULT(false), TIMED)
 CHOICE(sensor, force, "force sensor whose reading the controller gets as the force",
     1, "fsr|piezo", DEFAULT(FORCE_BY_FSR))
-INTEGER(sensor, encoder_counts, "counts of the encoder per revolution, 0 for a continuous reading",
+INTEGER(sensor, encoder_counts, "resolution of the encoder, counts a revolution, 0 for a continuous reading",
     0, 1000000000, DEFAULT(8000))
 REAL(sensor, encoder_gain_error, "share by which the encoder shows more than there is, which no "
     "controller is told", "", -0.9, 9, DEFAULT(0), TIMED)

@@ -89,7 +89,7 @@ static bool says_little(const char *word)
         "give "
         "given go got had happen happens has have how i if in instead into is isn it "
         "its just know let like ll look make many may me mean might much must my "
-        "need no not of off on one only or other our out over own pick please possible "
+        "need no not of off on one only or other our out over pick please possible "
         "really s say see select should show so some something still such t take "
         "tell than that the their them then there these they thing this those to too "
         "under up us use used using ve want was way we were what when where whether "
