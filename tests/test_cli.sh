@@ -369,7 +369,7 @@ expect 2 lab hit.yaml --quiet --script /dev/zero
 says err "is a device or a pipe, expected a plain file"
 expect 2 lab hit.yaml --quiet --script .
 says err ". cannot be read: Is a directory"
-{ printf 'seek 0.1\nseek '; printf '%0300d\n' 1; } >long.script
+{ printf 'seek 0.1\nseek '; printf '%01100d\n' 1; } >long.script
 expect 2 lab hit.yaml --quiet --script long.script
 says err "long.script:2: no command"
 

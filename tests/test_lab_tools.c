@@ -127,6 +127,7 @@ TEST(a_map_gives_what_single_runs_give)
     check_close(ex.model.session.effective.parameters.arm.k2, 6, 0);
 
     press_warns(&ex, ":sweep arm.k2=1:2:40 motor.voltage=1:2:40<Enter>", "too many");
+    press_warns(&ex, ":sweep arm.k2=1:2:4294967300<Enter>", "too many");
     press_warns(&ex, ":sweep arm.k2=1:2:4 arm.k2=1:2:4<Enter>", "different");
     press_warns(&ex, ":sweep arm.k2=1:2:4 motor.voltage<Enter>", "for a map two");
     press(&ex, "<Esc>");

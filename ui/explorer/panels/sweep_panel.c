@@ -22,7 +22,7 @@ static bool range_of_metric(const lab_sweep *sweep, value_range *range)
 // Where the value of a run lies on the axis, 0 to 1: values of a list stand side by side.
 static double share_along(const sweep_axis *axis, size_t index)
 {
-    const double value = axis->values[index];
+    const double value = sweep_axis_value(axis, (size_t)index);
     if (axis->is_range && axis->high != axis->low) {
         if (axis->logarithmic) {
             return log(value / axis->low) / log(axis->high / axis->low);
@@ -51,8 +51,8 @@ static void draw_axis_ends(screen *s, area a, const sweep_axis *axis)
 {
     char first[SWEEP_VALUE_TEXT], last[SWEEP_VALUE_TEXT];
     const int half = a.width / 2;
-    format_axis_value(axis, axis->values[0], first);
-    format_axis_value(axis, axis->values[axis->count - 1], last);
+    format_axis_value(axis, sweep_axis_value(axis, 0), first);
+    format_axis_value(axis, sweep_axis_value(axis, axis->count - 1), last);
     screen_words(s, a.x, a.y, half, INK_DIM, first);
     int length = text_cells(last);
     if (length > half) {
@@ -181,8 +181,8 @@ static void draw_map_axes(screen *s, area line, const lab_sweep *sweep)
     const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
     for (int i = 0; i < 2; i++) {
         char from[SWEEP_VALUE_TEXT], to[SWEEP_VALUE_TEXT];
-        format_axis_value(axes[i], axes[i]->values[0], from);
-        format_axis_value(axes[i], axes[i]->values[axes[i]->count - 1], to);
+        format_axis_value(axes[i], sweep_axis_value(axes[i], 0), from);
+        format_axis_value(axes[i], sweep_axis_value(axes[i], axes[i]->count - 1), to);
         const int used =
             area_print(s, line, INK_DIM, "%s%s to %s", i == 0 ? "" : ", up ", from, to);
         line = area_right(line, used);

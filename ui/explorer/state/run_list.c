@@ -260,9 +260,9 @@ void lab_sweep_values(const lab_sweep *sweep, int index, double values[2])
 {
     const int across = (int)sweep->axis.count;
     assert(index >= 0 && index < lab_sweep_total(sweep));
-    values[0] = sweep->axis.values[index % across];
+    values[0] = sweep_axis_value(&sweep->axis, (size_t)(index % across));
     if (lab_sweep_is_map(sweep)) {
-        values[1] = sweep->second.values[index / across];
+        values[1] = sweep_axis_value(&sweep->second, (size_t)(index / across));
     } else {
         values[1] = (double)NAN;
     }
@@ -312,14 +312,19 @@ static status read_sweep(lab_sweep *fresh, const char *definition, fault *f)
         most = MAP_CELLS;
         TRY(read_axis(&fresh->second, second, f));
     }
-    const size_t runs = (size_t)lab_sweep_total(fresh);
+
+    // in floating point, since two long ranges have more runs than an integer holds
+    double runs = (double)fresh->axis.count;
+    if (lab_sweep_is_map(fresh)) {
+        runs *= (double)fresh->second.count;
+    }
     FAULT_IF(
-        runs > most, f, STATUS_BAD_ARGUMENT,
-        "%zu runs are too many here, at most %zu: 'impactlab sweep' takes any number",
+        runs > (double)most, f, STATUS_BAD_ARGUMENT,
+        "%.9g runs are too many here, at most %zu: 'impactlab sweep' takes any number",
         runs, most);
     FAULT_IF(lab_sweep_is_map(fresh) && fresh->axis.parameter == fresh->second.parameter,
              f, STATUS_BAD_ARGUMENT, "a map takes two different parameters");
-    fresh->summaries = g_new0(summary, runs);
+    fresh->summaries = g_new0(summary, (size_t)runs);
     return STATUS_OK;
 }
 
@@ -376,7 +381,7 @@ status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
     if (map) {
         run_finish(&run);
     } else {
-        const double value = sweep->axis.values[sweep->count];
+        const double value = sweep_axis_value(&sweep->axis, (size_t)sweep->count);
         sweep->runs[sweep->count] = (swept_run){value, run, ++sweep->computed};
     }
     sweep->count++;
