@@ -353,8 +353,7 @@ static double approach_plainly(hybrid_memory *m, const controller_input *in,
     return m->p[APPROACH_VOLTAGE];
 }
 
-// The constant command; where contact is lost the hub goes back to position control, and
-// through the impact mode again when it returns.
+// The constant command, or after a loss a slow return to the pressing angle.
 static double approach_again(hybrid_memory *m, const controller_input *in,
                              controller_output *out)
 {
@@ -390,9 +389,7 @@ static double approach_again(hybrid_memory *m, const controller_input *in,
 // Speed at which a resting hub is taken, for the sign of its friction [rad/s].
 #define CREEP 1e-3
 
-// The hub kept below control.speed_limit and, where there is a control.force_limit, to
-// speeds at which the impact that the rig predicts for a touch at this instant
-// (predicted_force, (4.20)-(4.22)) keeps to it.
+// The constant command, or less where a limit would be exceeded.
 static double approach_within_limits(hybrid_memory *m, const controller_input *in,
                                      controller_output *out)
 {
@@ -407,8 +404,7 @@ static double approach_within_limits(hybrid_memory *m, const controller_input *i
     return limited;
 }
 
-// Full command to control.switch_share of the way, full command back until the hub rests,
-// then the constant one.
+// Full command one way, then the other, then the constant one.
 static double approach_fast(hybrid_memory *m, const controller_input *in,
                             controller_output *out)
 {
@@ -503,8 +499,13 @@ static const char *start_with_two(void *memory, const controller_setup *setup)
     CONTROLLER_LAW(word, names, table, hybrid_memory, .lockable = true, .start = begin,  \
                    .sample = act, .tune = begin)
 
-// What each variant does before contact, what after it, and for how long.
+// Each does something before contact, something after it, for as long as one of its
+// parameters says.
 
+// --- hybrid ---
+
+// The thesis's hybrid impact and force controller, 5.2 to 5.4: approach, impact mode,
+// force mode.
 static const controller_parameter hybrid_parameters[] = {HYBRID_PARAMETERS};
 
 static void sample_hybrid(void *memory, const controller_input *in,
@@ -515,6 +516,10 @@ static void sample_hybrid(void *memory, const controller_input *in,
 const controller hybrid_law =
     HYBRID_LAW("hybrid", hybrid_modes, hybrid_parameters, start_shared, sample_hybrid);
 
+// --- recovering ---
+
+// The controller that 5.4 calls ideal: hybrid, but going back to position control where
+// contact is lost, and through the impact mode again when it returns.
 static void sample_recovering(void *memory, const controller_input *in,
                               controller_output *out)
 {
@@ -524,6 +529,10 @@ const controller recovering_law =
     HYBRID_LAW("recovering", recovering_modes, hybrid_parameters, start_shared,
                sample_recovering);
 
+// --- reverse-torque ---
+
+// The hybrid controller until contact; then the largest command away from the wall for
+// control.reverse_time; then the hybrid controller's force mode.
 static const controller_parameter reverse_torque_parameters[] = {HYBRID_PARAMETERS,
                                                                  {.name =
                                                                       "reverse_time"}};
@@ -537,6 +546,11 @@ const controller reverse_torque_law =
     HYBRID_LAW("reverse-torque", hybrid_modes, reverse_torque_parameters, start_with_own,
                sample_reverse_torque);
 
+// --- speed-limit ---
+
+// The hybrid controller with the hub kept below control.speed_limit on the way to the
+// wall and, where there is a control.force_limit, to speeds at which the impact that the
+// rig predicts for a touch at this instant (predicted_force, (4.20)-(4.22)) keeps to it.
 static const controller_parameter speed_limit_parameters[] = {HYBRID_PARAMETERS,
                                                               {.name = "speed_limit"},
                                                               {.name = "force_limit"}};
@@ -550,6 +564,10 @@ const controller speed_limit_law =
     HYBRID_LAW("speed-limit", hybrid_modes, speed_limit_parameters, start_with_two,
                sample_speed_limit);
 
+// --- bang-bang ---
+
+// Full command to control.switch_share of the way, full command back until the hub rests,
+// then the plain approach and the hybrid controller.
 static const controller_parameter bang_bang_parameters[] = {HYBRID_PARAMETERS,
                                                             {.name = "switch_share"}};
 
