@@ -411,6 +411,24 @@ TEST(false_minima_are_left)
     unlink(file);
 }
 
+// An arm of three links that bounces ten times on a stiff wall which gives: errors of one
+// touch grow to the next one.
+TEST(many_touches_are_told_one_by_one)
+{
+    static const char wall[] = "arm.links=3 wall.contact=kelvin-voigt "
+                               "wall.stiffness=20000 wall.damping=5";
+    static const char *const fits[] = {"arm.k2", "arm.tip_mass", "motor.stiction"};
+    static const double values[] = {4.51, 0.00876, 0.0416};
+    char file[64];
+    KEPT_SCENARIO(base) =
+        shipped_with("compare/open-loop", formatted("%s arm.tip_mass=0.01", wall));
+    record_shipped(file, formatted("%s arm.k2=4.51 arm.tip_mass=0.00876 "
+                                   "motor.stiction=0.0416 control.seed=11",
+                                   wall));
+    search_often(file, &base, fits, values, 3, 5000);
+    unlink(file);
+}
+
 // A force that falls below the threshold of a touch and rises again, pressing all the
 // time.
 TEST(a_light_press_is_no_touch)
