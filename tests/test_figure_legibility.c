@@ -615,8 +615,8 @@ TEST(every_command_draws_what_can_be_read)
         "run corrected/five-links",
         "run corrected/free-vibration",
         "compare compare/hybrid compare/observer",
-        "compare compare/hybrid compare/observer compare/touch compare/force-pd "
-        "compare/open-loop",
+        ("compare compare/hybrid compare/observer compare/touch compare/force-pd "
+         "compare/open-loop"),
         "sweep corrected/first-impact --vary motor.voltage=1:5:5",
         "sweep corrected/first-impact --vary motor.voltage=1:5:5 --vary arm.k2=2:20:4",
         "robust compare/hybrid --runs 8",

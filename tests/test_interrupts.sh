@@ -190,8 +190,8 @@ there=$(grep -o '[0-9]* of 40000' err | grep -o '^[0-9]*')
 grep -q "^hybrid,$there," robust.csv && [ -s robust.svg ] && [ -s robust.md ] ||
     fail "the runs of a law that were done are not judged"
 part robust.json
-interrupted robust compare/force-pd --draw 20000 --csv exam.csv --json exam.json
-there=$(grep -o '[0-9]* of 20000' err | grep -o '^[0-9]*')
+interrupted robust compare/force-pd --draw 3000 --csv exam.csv --json exam.json
+there=$(grep -o '[0-9]* of 3000' err | grep -o '^[0-9]*')
 [ "$there" -gt 0 ] && [ "$(wc -l <exam.csv)" = $((there + 1)) ] ||
     fail "the cases of an exam that were done are not judged"
 part exam.json
