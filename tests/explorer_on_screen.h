@@ -120,6 +120,17 @@ static inline void press_opens(explorer *ex, const char *keys, const char *name)
     assert_string_equal(ex->model.session.base.name, name);
 }
 
+// How many keys a text of them has, <Name> being one.
+static inline int count_keys(const char *keys)
+{
+    int count = 0;
+    for (; *keys != '\0'; count++) {
+        const char *close = *keys == '<' ? strchr(keys, '>') : NULL;
+        keys = close != NULL ? close + 1 : keys + 1;
+    }
+    return count;
+}
+
 // Keys that leave the lab, or do not.
 static inline void press_quits(explorer *ex, const char *keys, bool quits)
 {

@@ -193,16 +193,6 @@ TEST(test_a_signal_is_hidden_by_a_key_or_a_click)
 
 // --- what is asked for -----------------------------------------------------------------
 
-static int count_keys(const char *keys)
-{
-    int count = 0;
-    for (; *keys != '\0'; count++) {
-        const char *close = *keys == '<' ? strchr(keys, '>') : NULL;
-        keys = close != NULL ? close + 1 : keys + 1;
-    }
-    return count;
-}
-
 // How much voltage so that the peak stays below 2 N? At most 20 keys, with completion.
 TEST(test_a_limit_is_asked_for_in_few_keys)
 {

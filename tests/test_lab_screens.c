@@ -282,16 +282,6 @@ TEST(touches_and_releases_are_told_on_the_axis)
 
 // --- walks -----------------------------------------------------------------------------
 
-static int count_keys(const char *keys)
-{
-    int count = 0;
-    for (; *keys != '\0'; count++) {
-        const char *close = *keys == '<' ? strchr(keys, '>') : NULL;
-        keys = close != NULL ? close + 1 : keys + 1;
-    }
-    return count;
-}
-
 // The keys of what people come for, from the first screen on.
 TEST_IN_FOLDER(walks_take_few_keys)
 {

@@ -6,16 +6,23 @@
 #include "src/base/dense.h"
 #include "src/tables/parameters.h"
 
+#define ROUNDING 1e-9 // of correlations that leave some combinations certain
+
+bool fitted_arm_factor(const scenario_fit *fit,
+                       double factor[SCENARIO_FIT * SCENARIO_FIT])
+{
+    memcpy(factor, fit->correlation, sizeof fit->correlation);
+    for (int i = 0; i < fit->count; i++) {
+        factor[i * fit->count + i] += ROUNDING;
+    }
+    return symmetric_factor(fit->count, factor);
+}
+
 void fitted_arm_draw(const scenario *around, random_generator *chance, double *values)
 {
-    // Cholesky's factor of the correlations, which may leave some combinations certain
     const scenario_fit *fit = around->fit;
     double factor[SCENARIO_FIT * SCENARIO_FIT];
-    memcpy(factor, fit->correlation, sizeof factor);
-    for (int i = 0; i < fit->count; i++) {
-        factor[i * fit->count + i] += 1e-9;
-    }
-    symmetric_factor(fit->count, factor);
+    fitted_arm_factor(fit, factor);
 
     double normal[SCENARIO_FIT];
     for (int i = 0; i < fit->count; i++) {

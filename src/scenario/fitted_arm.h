@@ -5,6 +5,12 @@
 #include "src/base/random.h"
 #include "src/scenario/scenario.h"
 
+// Cholesky's factor of a fit's correlations, in the lower triangle of factor[count x
+// count]. False if no parameters can have them: their matrix has a negative eigenvalue
+// beyond rounding.
+bool fitted_arm_factor(const scenario_fit *fit,
+                       double factor[SCENARIO_FIT * SCENARIO_FIT]);
+
 // Draws the fitted parameters of one arm: values[around->fit->count], each in its
 // parameter's unit. They are distributed normally about the scenario's, but not beyond
 // the parameters' limits. The scenario has a fit.

@@ -1,22 +1,9 @@
 // Reads what a fit to recordings leaves open of a scenario's parameters.
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "src/base/dense.h"
+#include "src/scenario/fitted_arm.h"
 #include "src/scenario/reader.h"
-
-// Whether there is an arm with such correlations: their matrix has no negative
-// eigenvalue, but for rounding.
-static bool can_be_correlated(const scenario_fit *fit)
-{
-    double factor[SCENARIO_FIT * SCENARIO_FIT];
-    memcpy(factor, fit->correlation, sizeof factor);
-    for (int i = 0; i < fit->count; i++) {
-        factor[i * fit->count + i] += 1e-9;
-    }
-    return symmetric_factor(fit->count, factor);
-}
 
 // Reads a fitted parameter's line, a list of its error and of its correlations with those
 // above: row[k] with parameter k. False after a fault.
@@ -109,7 +96,8 @@ void reader_fit(reader *r, const tree_node *map)
         }
         fit->correlation[i * fit->count + i] = 1;
     }
-    if (!can_be_correlated(fit)) {
+    double factor[SCENARIO_FIT * SCENARIO_FIT];
+    if (!fitted_arm_factor(fit, factor)) {
         report_node(r, map,
                     "fit: no parameters have such correlations, expected a "
                     "matrix without negative eigenvalues");
