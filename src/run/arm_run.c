@@ -402,6 +402,7 @@ status arm_run_open(arm_run *run, recording *r, motion *spare, fault *f)
     run->recording = r;
     run->segment.last_event = -1;
     run->zeno = zeno_monitor_begin();
+    arm_run_lay_out_rows(run);
 
     // the arm, its motion, and how the wall moves
     arm_run_bind_arm(run);

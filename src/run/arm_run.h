@@ -204,6 +204,10 @@ sample arm_run_row(const arm_run *run, double *state);
 status arm_run_record_row(arm_run *run, double *state, double impulse)
     __attribute__((warn_unused_result));
 
+// Computes the intervals of the grids that the run's rows lie on, and how far apart
+// instants of theirs may lie that are one.
+void arm_run_lay_out_rows(arm_run *run);
+
 // Records the row of the start, with which the grid begins.
 status arm_run_record_first_row(arm_run *run) __attribute__((warn_unused_result));
 

@@ -243,6 +243,21 @@ static status record_within(arm_run *run, const double *times, int count)
     return STATUS_OK;
 }
 
+void arm_run_lay_out_rows(arm_run *run)
+{
+    recording *r = run->recording;
+    const bool is_asked = r->options->rows_every > 0;
+    r->row_intervals[GRID_OF_STEPS] = r->row_intervals[GRID_ASKED_FOR] = HUGE_VAL;
+    if (r->options->keep_trace || !is_asked) {
+        r->row_intervals[GRID_OF_STEPS] = r->scenario->parameters.method.step;
+    }
+    if (is_asked) {
+        r->row_intervals[GRID_ASKED_FOR] = r->options->rows_every;
+    }
+    r->row_tolerance = GRID_TOLERANCE * smaller(r->row_intervals[GRID_OF_STEPS],
+                                                r->row_intervals[GRID_ASKED_FOR]);
+}
+
 status arm_run_record_first_row(arm_run *run)
 {
     row_record *rows = &run->recording->state.rows;
@@ -252,36 +267,16 @@ status arm_run_record_first_row(arm_run *run)
     return arm_run_record_row(run, run->motion->state, 0);
 }
 
-// The time between two rows of a grid [s]; HUGE_VAL: it has no row after the first.
-static double grid_interval(const arm_run *run, int grid)
-{
-    const recording *r = run->recording;
-    const bool is_asked = r->options->rows_every > 0;
-    double interval = HUGE_VAL;
-    if (grid == GRID_OF_STEPS && (r->options->keep_trace || !is_asked)) {
-        interval = r->scenario->parameters.method.step;
-    } else if (grid == GRID_ASKED_FOR && is_asked) {
-        interval = r->options->rows_every;
-    }
-    return interval;
-}
-
-// How far apart instants of the grids may lie that are one [s].
-static double grid_tolerance(const arm_run *run)
-{
-    return GRID_TOLERANCE *
-           smaller(grid_interval(run, GRID_OF_STEPS), grid_interval(run, GRID_ASKED_FOR));
-}
-
 // The instant of the next row of any grid [s]; of two that are one, that of the later
 // grid.
 static double next_row(const arm_run *run)
 {
-    const row_record *rows = &run->recording->state.rows;
+    const recording *r = run->recording;
+    const row_record *rows = &r->state.rows;
     double time = HUGE_VAL;
     for (int g = 0; g < ROW_GRIDS; g++) {
-        const double next = (double)rows->next[g] * grid_interval(run, g);
-        if (next <= time + grid_tolerance(run)) {
+        const double next = (double)rows->next[g] * r->row_intervals[g];
+        if (next <= time + r->row_tolerance) {
             time = next;
         }
     }
@@ -291,10 +286,11 @@ static double next_row(const arm_run *run)
 // Goes on to the row behind that of an instant [s] on each grid that has one there.
 static void pass_row(arm_run *run, double time)
 {
-    row_record *rows = &run->recording->state.rows;
+    recording *r = run->recording;
+    row_record *rows = &r->state.rows;
     for (int g = 0; g < ROW_GRIDS; g++) {
-        const double next = (double)rows->next[g] * grid_interval(run, g);
-        if (next <= time + grid_tolerance(run)) {
+        const double next = (double)rows->next[g] * r->row_intervals[g];
+        if (next <= time + r->row_tolerance) {
             rows->next[g]++;
         }
     }
@@ -303,9 +299,10 @@ static void pass_row(arm_run *run, double time)
 status arm_run_record_last_row(arm_run *run, double time)
 {
     // a grid that has a row there has gone on behind it
-    const row_record *rows = &run->recording->state.rows;
+    const recording *r = run->recording;
+    const row_record *rows = &r->state.rows;
     for (int g = 0; g < ROW_GRIDS; g++) {
-        const double interval = grid_interval(run, g);
+        const double interval = r->row_intervals[g];
         if (isfinite(interval) &&
             (double)(rows->next[g] - 1) * interval >= time - GRID_TOLERANCE * interval) {
             return STATUS_OK;
@@ -339,7 +336,7 @@ status arm_run_record_rows_to(arm_run *run, double time)
     if (!recording_has_rows(run->recording)) {
         return STATUS_OK;
     }
-    return record_rows_before(run, time + grid_tolerance(run));
+    return record_rows_before(run, time + run->recording->row_tolerance);
 }
 
 // Records the rows of the grids that lie within the step just made. A row of a grid at
@@ -347,7 +344,7 @@ status arm_run_record_rows_to(arm_run *run, double time)
 static status record_grid(arm_run *run, bool at_event)
 {
     motion *m = run->motion;
-    const double now = m->state[SLOT_TIME], tolerance = grid_tolerance(run);
+    const double now = m->state[SLOT_TIME], tolerance = run->recording->row_tolerance;
 
     // those before its end
     TRY(record_rows_before(run, now - tolerance));

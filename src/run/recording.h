@@ -70,7 +70,9 @@ typedef struct recording {
     run_result *result;
     parameters now; // parameters as changed by the script so far
     recording_state state;
-    rig *rig;                   // NULL for the bare arm
+    double row_intervals[ROW_GRIDS]; // [s]; HUGE_VAL: no row after the first
+    double row_tolerance; // how far apart instants of the grids may lie that are one [s]
+    rig *rig;             // NULL for the bare arm
     recorded_command command;   // of the rig
     shown_sample shown;         // of the rig, in rows
     double begun_cpu, begun_at; // by the thread's clock and the machine's [s]
