@@ -322,59 +322,41 @@ static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
     return false;
 }
 
-void quadratic_cost_add(quadratic_cost *c, int n, const double *row, double direct,
-                        double weight)
+bool quadratic_gain(const sampled_model *m, const double *weight, double effort,
+                    double *gain)
 {
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            c->state[i][j] += weight * row[i] * row[j];
-        }
-        c->cross[i] += weight * row[i] * direct;
-    }
-    c->effort += weight * direct * direct;
-}
-
-bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gain)
-{
-    assert(m->n > 0 && m->n <= N && c->growth > 0);
+    assert(m->n > 0 && m->n <= N);
     const int n = m->n;
-    if (!(c->effort > 0)) {
+    if (!(effort > 0)) {
         return false;
     }
-
-    // the substitution u = v - s'z/r leaves a cost without a cross term
     matrix a = {{0}}, g = {{0}}, q = {{0}}, x = {{0}};
-    double b[N];
     for (int i = 0; i < n; i++) {
-        b[i] = c->growth * m->b[i];
-    }
-    for (int i = 0; i < n; i++) {
+        q[i][i] = weight[i];
         for (int j = 0; j < n; j++) {
-            a[i][j] = c->growth * m->a[i][j] - b[i] * c->cross[j] / c->effort;
-            g[i][j] = b[i] * b[j] / c->effort;
-            q[i][j] = c->state[i][j] - c->cross[i] * c->cross[j] / c->effort;
+            a[i][j] = m->a[i][j];
+            g[i][j] = m->b[i] * m->b[j] / effort;
         }
     }
     if (!riccati(n, a, g, q, x)) {
         return false;
     }
 
-    // the gain (r + b'x b)^-1 (b'x A + s')
-    double bx[N], weight = c->effort;
+    // the gain (r + b'x b)^-1 b'x A
+    double bx[N] = {0}, sum = effort;
     for (int j = 0; j < n; j++) {
-        bx[j] = 0;
         for (int i = 0; i < n; i++) {
-            bx[j] += b[i] * x[i][j];
+            bx[j] += m->b[i] * x[i][j];
         }
-        weight += bx[j] * b[j];
+        sum += bx[j] * m->b[j];
     }
     bool finite = true;
     for (int j = 0; j < n; j++) {
-        gain[j] = c->cross[j];
+        gain[j] = 0;
         for (int i = 0; i < n; i++) {
-            gain[j] += bx[i] * c->growth * m->a[i][j];
+            gain[j] += bx[i] * m->a[i][j];
         }
-        gain[j] /= weight;
+        gain[j] /= sum;
         finite = finite && isfinite(gain[j]);
     }
     return finite;

@@ -79,23 +79,12 @@ void estimator_correct(estimator *e, int n, const estimator_view *view, double r
 void estimator_transform(estimator *e, int from, int to,
                          double t[ESTIMATOR_STATES][ESTIMATOR_STATES]);
 
-// --- the gain of a regulator, any weights ----------------------------------------------
+// --- the gain of a regulator -----------------------------------------------------------
 
-// The sum over samples k of (z'Q z + 2 z's u + r u^2) growth^2k.
-typedef struct quadratic_cost {
-    double state[ESTIMATOR_STATES][ESTIMATOR_STATES]; // Q
-    double cross[ESTIMATOR_STATES];                   // s
-    double effort;                                    // r > 0
-    double growth; // 1 is the plain optimum; above it errors die faster than growth^-k
-} quadratic_cost;
-
-// Adds weight (row z + direct u)^2 to a cost of n states.
-void quadratic_cost_add(quadratic_cost *c, int n, const double *row, double direct,
-                        double weight);
-
-// Gain of the feedback u = -gain z that makes the cost least on a sampled model: the
-// stabilising solution of the discrete Riccati equation by the structured doubling
-// algorithm (Chu, Fan, Lin and Wang, International Journal of Control 77, 2004), which
-// squares the closed loop's decay in each of its steps. False if it does not converge:
-// there is no stabilising solution.
-bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gain);
+// Gain of the feedback u = -gain z that makes the sum over all samples of sum weight_i
+// z_i^2 + effort u^2 least on a sampled model: the stabilising solution of the discrete
+// Riccati equation by the structured doubling algorithm (Chu, Fan, Lin and Wang,
+// International Journal of Control 77, 2004), which squares the closed loop's decay in
+// each of its steps. False if it does not converge: there is no stabilising solution.
+bool quadratic_gain(const sampled_model *m, const double *weight, double effort,
+                    double *gain);

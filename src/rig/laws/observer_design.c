@@ -55,22 +55,18 @@ static bool find_gain(const controller_setup *setup, const mode_set *set, int fi
 {
     const int n = set->count;
     sampled_model model;
-    quadratic_cost cost = {.growth = 1};
     command_model(setup->hub_damping, setup->period, set, first, setup->torque_per_volt,
                   &model);
 
     // twice the energy, sum a_i'^2 + w_i^2 a_i^2: of motion, and of bending
+    double weight[ESTIMATOR_STATES] = {0};
     for (int i = 0; i < n; i++) {
-        double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
-        motion[n - first + i] = 1;
-        quadratic_cost_add(&cost, model.n, motion, 0, 1);
+        weight[n - first + i] = 1;
         if (i >= first) {
-            strain[i - first] = 1;
-            quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
+            weight[i - first] = set->square[i];
         }
     }
-    cost.effort = effort;
-    return quadratic_gain(&model, &cost, gains + first);
+    return quadratic_gain(&model, weight, effort, gains + first);
 }
 
 // The gains in flight, with the effort for which the rotation alone would have a time
