@@ -42,8 +42,8 @@ typedef struct admittance_memory {
 static const char *admittance_tune(void *memory, const controller_setup *setup)
 {
     admittance_memory *m = memory;
-    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period,
-                   m->rig.period == 0);
+    set_point_tell(&m->wanted, SET_POINT_PACE, setup->parameters[FORCE_WANTED],
+                   setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;

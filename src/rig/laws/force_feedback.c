@@ -54,8 +54,8 @@ static const controller_parameter force_feedback_parameters[PARAMETERS] = {
 static const char *force_feedback_tune(void *memory, const controller_setup *setup)
 {
     force_memory *m = memory;
-    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period,
-                   m->rig.period == 0);
+    set_point_tell(&m->wanted, SET_POINT_PACE, setup->parameters[FORCE_WANTED],
+                   setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;

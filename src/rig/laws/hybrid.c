@@ -84,7 +84,8 @@ static void hybrid_tell(hybrid_memory *m, const controller_setup *setup, size_t 
     const double *p = setup->parameters;
 
     m->replans = m->mode == IMPACT && m->p[TRANSITION] != p[TRANSITION];
-    set_point_tell(&m->wanted, p[FORCE_WANTED], setup->period, m->rig.period == 0);
+    set_point_tell(&m->wanted, SET_POINT_PACE, p[FORCE_WANTED], setup->period,
+                   m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, p, count * sizeof p[0]);
     m->printed = p[COEFFICIENTS] != 0;

@@ -46,8 +46,8 @@ typedef struct impedance_memory {
 static const char *impedance_tune(void *memory, const controller_setup *setup)
 {
     impedance_memory *m = memory;
-    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period,
-                   m->rig.period == 0);
+    set_point_tell(&m->wanted, SET_POINT_PACE, setup->parameters[FORCE_WANTED],
+                   setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
 

@@ -52,17 +52,19 @@ typedef struct set_point {
     double seen_rate;                 // of the aim by two samples, 0 for a step [N/s]
     double aim_rate;                  // the same smoothed [N/s]
     bool changed;                     // the aim has changed since the last sample
-    double decay;                     // e^(-w T) of the period T
+    double pace, decay;               // w of following [1/s], e^(-w T) of the period T
     double force, rate, acceleration; // the smooth force [N], [N/s], [N/s2]
 } set_point;
 
-#define SET_POINT_RATE 40.0 // of following, w [1/s]
+#define SET_POINT_PACE 40.0 // of most laws, w [1/s]
 
-// Gives the set-point a wanted force [N], at the start or later.
-static inline void set_point_tell(set_point *s, double force, double period,
+// Gives the set-point a wanted force [N], at the start or later, and the pace w [1/s]
+// with which the smooth force follows.
+static inline void set_point_tell(set_point *s, double pace, double force, double period,
                                   bool at_start)
 {
-    s->decay = plain_exp(-SET_POINT_RATE * period);
+    s->pace = pace;
+    s->decay = plain_exp(-pace * period);
     if (at_start) {
         s->aim = s->force = force;
         s->rise = s->seen_rate = 0;
@@ -88,7 +90,7 @@ static inline void set_point_tell(set_point *s, double force, double period,
 //     e'' + 2 w e' + w^2 e = 0,    e(t) = (e0 + (e0' + w e0) t) exp(-w t)
 static inline void set_point_follow(set_point *s, double period)
 {
-    const double w = SET_POINT_RATE, decay = s->decay;
+    const double w = s->pace, decay = s->decay;
 
     // the rate of the aim, smoothed; an aim that has not changed has the rate 0
     if (!s->changed) {

@@ -43,12 +43,14 @@ static const controller_parameter table[PARAMETERS] = {
 #define BIAS_TIME       0.1
 #define MOST_CORRECTION 0.3  // that it may add to the force aimed at, a share
 #define LOST_AFTER      4e-3 // without a reading that shows force contact is lost [s]
+// of following a set-point that moves [1/s]
+#define PACE 60.0
 // of the tip where it returns, for every newton wanted [rad/s/N],
 #define LAND_SPEED 0.035
 #define LAND_TIME  0.1  // or the way left over this, if that is faster [s]
 #define BRAKING    0.5  // share of the force that this may press with meanwhile
 #define REST       0.02 // a slower hub is at rest [rad/s]
-// a slower hub as good as rests where the set-point moves [rad/s]
+// a set-point that turns the hub more slowly is at rest [rad/s]
 #define TURNS       0.005
 #define HOLD_WITHIN 0.02  // share of the force within which it is held at rest,
 #define HOLD_BEYOND 0.04  // and beyond which it is held no longer,
@@ -81,9 +83,8 @@ typedef struct observer_memory {
     int mode;
     bool started;
     int felt;            // readings in a row that showed contact
-    double force_change; // change of the set-point since the sample before [N]
-    double lead_force;   // by which a set-point that keeps moving is led [N]
-    double force_rate;   // of a set-point that moves from sample to sample [N/s]
+    set_point wanted;    // of which the force is the aim
+    double risen;        // its force to which the rise is planned [N]
     double correction;   // of the force aimed at: what the estimated force is above the
                          // reading [N]
     double held_force;   // mean of the reading while it holds [N]
@@ -114,6 +115,7 @@ static const char *observer_start(void *memory, const controller_setup *setup)
     observer_memory *m = memory;
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
+    set_point_tell(&m->wanted, PACE, m->p[FORCE_WANTED], setup->period, true);
     if (!(setup->torque_per_volt > 0)) {
         return "it needs a motor that turns the hub";
     }
@@ -149,7 +151,11 @@ static const char *observer_tune(void *memory, const controller_setup *setup)
     if (!same_rig(&m->rig, setup)) {
         return "it takes its model and its rate at the start only";
     }
-    m->force_change += setup->parameters[FORCE_WANTED] - m->p[FORCE_WANTED];
+    if (setup->parameters[FORCE_WANTED] != m->p[FORCE_WANTED] && m->mode == HOLD) {
+        m->mode = PRESS;
+    }
+    set_point_tell(&m->wanted, PACE, setup->parameters[FORCE_WANTED], setup->period,
+                   false);
     m->rig.voltage_limit = setup->voltage_limit;
     memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;
@@ -325,18 +331,19 @@ static double mode_at_rest(const observer_memory *m, double force)
            arm_observer_square(observer_of(m), 0);
 }
 
-// Plans the rise to a force [N] from a coordinate of the first mode in contact and its
-// rate, at an instant [s].
-static void plan_rise(observer_memory *m, double time, double coordinate, double rate,
-                      double force)
+// Plans the rise to the wanted force from the estimate of the first mode.
+static void begin_rise(observer_memory *m, double time)
 {
+    const arm_observer *o = observer_of(m);
+    const double coordinate = o->e.z[0], rate = o->e.z[o->arm.contact.count];
     const double limit = m->p[FORCE_LIMIT], stopped = coordinate + rate / divergence(m);
-    const double least = mode_at_rest(m, OBSERVER_LEAST_FORCE * force);
+    m->risen = m->wanted.force;
+    const double least = mode_at_rest(m, OBSERVER_LEAST_FORCE * m->risen);
     const force_rise_task task = {
         .coordinate = coordinate,
         .rate = rate,
         .divergence = divergence(m),
-        .end = mode_at_rest(m, force),
+        .end = mode_at_rest(m, m->risen),
         .least = fmax(0, fmin(least, least_share(m) * stopped)),
         .most = limit > 0 ? mode_at_rest(m, limit) : HUGE_VAL,
         .time = time,
@@ -350,56 +357,27 @@ static void plan_rise(observer_memory *m, double time, double coordinate, double
     }
 }
 
-// Begins the rise to the wanted force from the estimate of the first mode.
-static void begin_rise(observer_memory *m, double time)
+// The first mode's planned coordinate, its rate and its second derivative at an instant
+// [s]: on the rise, or at rest under the force that it led to, and as far on as the
+// set-point has moved since. True on the rise.
+static bool planned_motion(const observer_memory *m, double time, double motion[3])
 {
-    const arm_observer *o = observer_of(m);
-    plan_rise(m, time, o->e.z[0], o->e.z[o->arm.contact.count], m->p[FORCE_WANTED]);
-}
-
-// Force that is added to a set-point which keeps moving [N]. Since the rise is planned
-// again at every sample, the force stays 2 r/s behind a set-point that moves at the rate
-// r; so 2 r/s is added. It is added through a lag of a quarter of the time 2/s, because
-// otherwise fast waves of the set-point would be amplified without bound.
-static void lead_setpoint(observer_memory *m, bool keeps_moving)
-{
-    if (!keeps_moving) {
-        m->lead_force = 0;
-        return;
-    }
-    const double lead = 2 / divergence(m), share = fmin(1, 4 * m->rig.period / lead);
-    m->lead_force += share * (lead * m->force_rate - m->lead_force);
-}
-
-// Follows a set-point that changes in contact: the rise is planned again, from where it
-// is to the new force. A single change is a step; changes in two samples running are a
-// set-point that keeps moving.
-static void follow_setpoint(observer_memory *m, double time)
-{
-    if (m->force_change == 0 && m->force_rate == 0) {
-        return;
-    }
-    const bool keeps_moving = m->force_change != 0 && m->force_rate != 0;
-
-    // the planned motion of the first mode, which rests if the rise before is over
-    const double force_before = m->p[FORCE_WANTED] - m->force_change;
-    double motion[3] = {mode_at_rest(m, force_before + m->correction), 0, 0};
-    if (force_rise_moves(&m->rise, time)) {
+    const bool rises = force_rise_moves(&m->rise, time);
+    motion[0] = mode_at_rest(m, m->risen + m->correction);
+    motion[1] = motion[2] = 0;
+    if (rises) {
         force_rise_at(&m->rise, time, motion);
     }
+    motion[0] += mode_at_rest(m, m->wanted.force - m->risen);
+    motion[1] += mode_at_rest(m, m->wanted.rate);
+    motion[2] += mode_at_rest(m, m->wanted.acceleration);
+    return rises;
+}
 
-    // and from there to the new force
-    m->force_rate = m->force_change / m->rig.period;
-    m->force_change = 0;
-    lead_setpoint(m, keeps_moving);
-    plan_rise(m, time, motion[0], motion[1],
-              fmax(0, m->p[FORCE_WANTED] + m->correction + m->lead_force));
-
-    // a set-point that keeps moving has the rise under way until the next sample
-    if (keeps_moving) {
-        m->rise.time = fmax(m->rise.time, 2 * m->rig.period);
-    }
-    m->mode = PRESS;
+// Rate with which a set-point that moves turns the hub [rad/s].
+static double turning_rate(const observer_memory *m)
+{
+    return observer_of(m)->arm.contact.hub[0] * mode_at_rest(m, m->wanted.rate);
 }
 
 // Force with which the beam presses where the hub is [N].
@@ -415,17 +393,18 @@ static double resting_force(const observer_memory *m, const estimator *e)
 // full step would change the force by several per cent at once. The error is the mean of
 // one by the estimate and one by the reading, which errors of the hub's sensors do not
 // touch.
-static double friction_pressing(const observer_memory *m, const estimator *e, double aim,
-                                double hub_rate, bool moves)
+static double friction_pressing(const observer_memory *m, const estimator *e,
+                                double hub_rate, bool rises)
 {
     const double rate = arm_observer_rate(observer_of(m), e), force = m->p[FORCE_WANTED];
-    if (m->force_rate != 0) {
-        return m->rig.stiction * fmax(-1, fmin(hub_rate / TURNS, 1));
+    if (fabs(turning_rate(m)) > TURNS) {
+        return coulomb_friction(&m->rig, hub_rate);
     }
-    if (moves || fabs(rate) > REST) {
+    if (rises || fabs(rate) > REST) {
         return friction_ahead(m, rate, hub_rate);
     }
-    const double error = (aim - resting_force(m, e) + force - m->mean_force) / 2;
+    const double error =
+        force - (resting_force(m, e) - m->correction + m->mean_force) / 2;
     return m->rig.stiction *
            fmax(-1, fmin(error / (HOLD_WITHIN * force + HOLD_LEAST), 1));
 }
@@ -438,14 +417,10 @@ static double press_command(const observer_memory *m, const estimator *e, double
     const arm_observer *o = observer_of(m);
     const mode_set *set = &o->arm.contact;
     const int n = set->count;
-    const double aim = m->p[FORCE_WANTED] + m->correction;
 
     // the first mode's planned motion, and the torque for it: a'' + w^2 a = h torque
-    const bool moves = force_rise_moves(&m->rise, time);
-    double motion[3] = {mode_at_rest(m, aim), 0, 0};
-    if (moves) {
-        force_rise_at(&m->rise, time, motion);
-    }
+    double motion[3];
+    const bool rises = planned_motion(m, time, motion);
     double torque = (motion[2] + arm_observer_square(o, 0) * motion[0]) / set->hub[0];
 
     // feedback of the deviations from that; another mode rests at h torque/w^2
@@ -464,7 +439,7 @@ static double press_command(const observer_memory *m, const estimator *e, double
     // hub damping, friction, and the torque that the model does not know of
     const double hub_rate = set->hub[0] * motion[1];
     torque += m->rig.hub_damping * hub_rate - e->z[arm_observer_torque_index(o)] +
-              friction_pressing(m, e, aim, hub_rate, moves);
+              friction_pressing(m, e, hub_rate, rises);
     return within_force(m, e, torque / m->rig.torque_per_volt + feedback);
 }
 
@@ -646,7 +621,7 @@ static bool rests_at_right_force(const observer_memory *m, const estimator *e,
                                  double rate)
 {
     double force = m->p[FORCE_WANTED];
-    return m->rig.stiction > 0 && m->force_rate == 0 && rate < REST &&
+    return m->rig.stiction > 0 && fabs(turning_rate(m)) < TURNS && rate < REST &&
            fabs(m->mean_force - force) < HOLD_WITHIN * force + HOLD_LEAST &&
            fabs(resting_force(m, e) - force) < HOLD_WITHIN * force + HOLD_LEAST &&
            sqrt(m->swing) < HOLD_SWING * force + HOLD_LEAST;
@@ -755,9 +730,7 @@ static void observer_sample(void *memory, const controller_input *in,
     } else {
         begin_approach(m, in);
     }
-    if (observer_of(m)->touches && m->mode != CATCH) {
-        follow_setpoint(m, in->time);
-    }
+    set_point_follow(&m->wanted, m->rig.period);
 
     const estimator ahead = arm_observer_ahead(observer_of(m), in->voltage);
     if (observer_of(m)->touches) {

@@ -271,7 +271,8 @@ static const char *tune(void *memory, const controller_setup *setup)
         return "it needs a motor with torque";
     }
     const bool at_start = m->rig.period == 0;
-    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, at_start);
+    set_point_tell(&m->wanted, SET_POINT_PACE, setup->parameters[FORCE_WANTED],
+                   setup->period, at_start);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     design_arm(d, setup);
