@@ -39,32 +39,6 @@ TEST(test_an_automatic_axis_spans_what_is_visible)
     check_below(ex.layout.axes[0].high, 0.95);
 }
 
-// An axis that grows spans what the cursor has passed so far: its upper end follows the
-// force up to the peak at 0.36 s and then stays.
-TEST(test_a_growing_axis_never_shrinks)
-{
-    OPEN_EXPLORER(ex, "corrected/first-impact");
-    carry_out(&ex, "axis grow 1");
-    double highest = 0;
-    for (double t = 0; t <= 1; t += 0.05) {
-        session_seek(&ex.model.session, t);
-        free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
-        assert_true(ex.layout.axes[0].high >= highest);
-        highest = ex.view.panes.pane[0].grown.high > highest
-                      ? ex.view.panes.pane[0].grown.high
-                      : highest;
-        // before the peak is passed the axis has not reached it
-        assert_true(t > 0.36 ||
-                    ex.view.panes.pane[0].grown.high <
-                        ex.model.session.run.summary.first_pulse_peak_N * 0.999);
-    }
-    check_relative(highest, ex.model.session.run.summary.first_pulse_peak_N, 1e-3);
-    // neither going back nor a weaker run makes it shrink
-    carry_out(&ex, "seek 0.1");
-    carry_out(&ex, "set motor.voltage 0.3");
-    check_axis(&ex, 0, 0, highest);
-}
-
 // A range that was typed stays through zooms, the cursor and other runs. "axis in" halves
 // it about its middle: from -1..4 to 1.5 +- 1.25; "axis up" moves it by a quarter of its
 // length, 2.5/4 = 0.625.
@@ -84,10 +58,10 @@ TEST(test_a_fixed_axis_stays)
     check_axis(&ex, 0, 0.875, 3.375);
     carry_out(&ex, "axis auto all");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
-    assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_AUTO);
+    assert_false(ex.view.panes.pane[0].is_fixed);
 }
 
-// Keys: w gives the next pane the focus, a chooses the next scaling of its axis, v fixes
+// Keys: w gives the next pane the focus, a fixes its axis and lets it go, v fixes
 // the axis and zooms in, V zooms out, Shift with an arrow moves the axis, e shows the
 // pane alone and then all again.
 TEST(test_keys_change_the_axis_of_the_pane_in_focus)
@@ -96,13 +70,14 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     press(&ex, "w");
     assert_int_equal(panes_focused(&ex.view.panes), 2);
-    for (EACH_OF(axis_scaling, c, AXIS_GROW, AXIS_FIXED, AXIS_CALM, AXIS_AUTO)) {
-        press(&ex, "a");
-        assert_int_equal(ex.view.panes.pane[2].scaling, *c);
-    }
+    press(&ex, "a");
+    assert_true(ex.view.panes.pane[2].is_fixed);
+    check_close(ex.view.panes.pane[2].fixed.high, ex.layout.axes[2].high, 1e-12);
+    press(&ex, "a");
+    assert_false(ex.view.panes.pane[2].is_fixed);
     press(&ex, "v");
-    assert_int_equal(ex.view.panes.pane[2].scaling, AXIS_FIXED);
-    assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_AUTO);
+    assert_true(ex.view.panes.pane[2].is_fixed);
+    assert_false(ex.view.panes.pane[0].is_fixed);
     press(&ex, "V<S-Up><S-Down>ww");
     assert_int_equal(panes_focused(&ex.view.panes), 0);
 
@@ -127,7 +102,7 @@ TEST(test_wrong_axes_are_told)
                    "zoom 2 1", "zoom 1 2 3", "pan", "pan nowhere", "pan left")) {
         refuse(&ex, *c);
     }
-    assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_AUTO);
+    assert_false(ex.view.panes.pane[0].is_fixed);
     carry_out(&ex, "trace impulse");
     carry_out(&ex, "axis 0 1 10");
     assert_shows(&ex, "10   N s");
@@ -284,9 +259,9 @@ TEST(test_ranges_of_long_runs_are_exact)
         }
     }
 
-    // drawing the whole run with growing axes is survived
+    // drawing the whole run with fixed axes is survived
     carry_out(&ex, "zoom all");
-    carry_out(&ex, "axis grow all");
+    carry_out(&ex, "axis fixed all");
     free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
 }
 

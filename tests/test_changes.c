@@ -226,7 +226,7 @@ TEST(test_nudges_are_one_change_and_reversible)
         if (info->type != PARAMETER_REAL || leaves || !(before > info->minimum)) {
             continue;
         }
-        parameter_list_select(&ex.view.parameters, (parameter_line){i, false});
+        ex.view.parameters.parameter = i;
         press(&ex, "<lt><lt><lt>>>>");
         fail_if(fabs(value_of(&ex, i) - before) > 1e-5 * fabs(before),
                 "%s: %.17g and then %.17g", info->path, before, value_of(&ex, i));
@@ -267,15 +267,11 @@ TEST(test_everything_that_is_listed_can_be_filtered)
     press_opens(&ex, "o/five<Enter>", "corrected/five-links");
 }
 
-TEST(test_groups_of_parameters_fold)
+TEST(test_a_group_is_found_by_its_name)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press_shows(&ex, ":fold none<Enter>:set motor.voltage<Enter>", "\u25be motor",
-                "amplifier_gain");
-    press_shows(&ex, "k<Enter>", "\u25b8 motor", "!amplifier_gain");
-    press_shows(&ex, "<Enter>", "amplifier_gain");
-    press_shows(&ex, ":fold all<Enter>", "\u25b8 sensor");
-    press_shows(&ex, ":set film_gain<Enter>", "film_gain");
+    press_shows(&ex, "/motor.amp", "amplifier_gain", "!coulomb");
+    press_shows(&ex, "<Esc>:set film_gain<Enter>", "film_gain");
 }
 
 TEST(test_values_and_last_parts_are_completed_in_turn)
@@ -297,7 +293,17 @@ TEST(test_descriptions_are_shown)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press_shows(&ex, ":info<Enter>", "The thesis's three modes with");
-    press_shows(&ex, "<Esc>o", "The thesis's three modes with");
+
+    // the list of what can be opened has the present one selected, and words narrow it
+    press_shows(&ex, "<Esc>o", "Hybrid, corrected coefficients");
+    press(&ex, "<Down><Up><Enter>");
+    assert_string_equal(ex.model.session.base.name, "compare/hybrid");
+    press_shows(&ex, "otwenty", "corrected/twenty-links", "!compare/hybrid-printed");
+    press(&ex, "<Enter>");
+    assert_string_equal(ex.model.session.base.name, "corrected/twenty-links");
+    press_shows(&ex, ":lesson<Enter>", "lessons/step-size", "!compare/touch");
+    press(&ex, "<PgDn><Enter>");
+    assert_true(ex.model.lesson.on);
 }
 
 TEST(test_leaving_asks_if_changes_would_be_lost)

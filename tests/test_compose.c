@@ -77,8 +77,9 @@ TEST(test_the_status_keeps_what_matters)
         assert_shows_at(&ex, width, 24, "paused");
         assert_shows_at(&ex, width, 24, "t 0.65000 s");
     }
-    assert_shows_at(&ex, 60, 24, "in contact, hub sticks");
-    assert_shows_at(&ex, 90, 24, "corrected, hybrid");
+    assert_shows_at(&ex, 60, 24, "hybrid: force");
+    assert_shows_at(&ex, 80, 24, "in contact, hub sticks");
+    assert_shows_at(&ex, 110, 24, "corrected");
 
     // the last row of that instant, of all that there are
     const trace *t = &ex.model.session.run.trace;

@@ -183,12 +183,12 @@ TEST(test_a_signal_is_hidden_by_a_key_or_a_click)
     check_close(ex.model.session.now, 0.5, 1e-12);
 
     // the axis is that of what is shown
-    value_range all, calm;
+    value_range all, fewer;
     press(&ex, ":panes 6<Enter>:signal all<Enter>");
     assert_true(view_pane_axis(&ex.model, &ex.view, 5, &all));
     press(&ex, ":signal motor_work<Enter>");
-    assert_true(view_pane_axis(&ex.model, &ex.view, 5, &calm));
-    check_below(calm.high, all.high);
+    assert_true(view_pane_axis(&ex.model, &ex.view, 5, &fewer));
+    check_below(fewer.high, all.high);
 }
 
 // --- what is asked for -----------------------------------------------------------------

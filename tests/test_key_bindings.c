@@ -104,7 +104,7 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
     OPEN_EXPLORER(keeps, "corrected/first-impact");
     press(&keeps, ":theme light<Enter>:glyphs blocks<Enter>:axis -0.5 2.25 1<Enter>");
     press_shows(&keeps,
-                ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace "
+                ":axis -1 1 3<Enter>:key <lt> step -5<Enter>:key C-t trace "
                 "5<Enter>:unkey x<Enter>:key Space step 3<Enter>:key # "
                 "mark<Enter>:remember<Enter>",
                 "settings kept");
@@ -113,11 +113,11 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
     assert_string_equal(ex.input.message.text, "");
     assert_int_equal(ex.view.looks.theme, COLOURS_LIGHT);
     assert_int_equal(ex.view.looks.glyphs, GLYPHS_BLOCKS);
-    assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_FIXED);
+    assert_true(ex.view.panes.pane[0].is_fixed);
     check_close(ex.view.panes.pane[0].fixed.low, -0.5, 0);
     check_close(ex.view.panes.pane[0].fixed.high, 2.25, 0);
-    assert_int_equal(ex.view.panes.pane[2].scaling, AXIS_GROW);
-    assert_int_equal(ex.view.panes.pane[3].scaling, AXIS_AUTO);
+    assert_true(ex.view.panes.pane[2].is_fixed);
+    assert_false(ex.view.panes.pane[3].is_fixed);
     assert_int_equal(ex.view.keys.count, 5);
     assert_string_equal(key_line(&ex.view.keys, '<'), "step -5");
     assert_string_equal(key_line(&ex.view.keys, ' '), "step 3");

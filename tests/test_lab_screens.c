@@ -250,13 +250,20 @@ TEST(knobs_are_few_and_lead_to_all)
             assert_null(model_inert_reason(&ex.model, list->knobs[i]));
         }
 
-        // down to their end, where all begin; Esc goes back
+        // all of them behind Tab, Esc goes back; headings are passed over
         for (int i = 0; i < MOST_KNOBS + 1; i++) {
             press(&ex, "<Down>");
         }
-        assert_true(list->on_heading);
-        press_shows(&ex, "<Enter>", "\u25be arm", "parameters (Tab");
-        press_shows(&ex, "<Esc>", "knobs (/ all", "!\u25be arm");
+        press_shows(&ex, "<Tab>", "parameters (Tab");
+        for (int i = 0; i < parameter_count; i++) {
+            press(&ex, "<Up>");
+        }
+        assert_int_equal(list->parameter, 0);
+        for (int i = 1; i < parameter_count; i++) {
+            press(&ex, "<Down>");
+            assert_int_equal(list->parameter, i);
+        }
+        press_shows(&ex, "<Esc>", "knobs (/ all");
         press_shows(&ex, "/seed", "parameters /seed");
         press(&ex, "<Esc>");
     }

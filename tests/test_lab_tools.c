@@ -1,4 +1,4 @@
-// What the lab has beside curves: notes, bands, colours of runs, maps, parameters fitted
+// What the lab has beside curves: notes, colours of runs, maps, parameters fitted
 // to measured data, residuals, the clipboard, the first visit.
 #include "tests/explorer_on_screen.h"
 
@@ -48,8 +48,8 @@ TEST(notes_are_kept_in_time_and_in_sessions)
         press_warns(&ex, ":note<Enter>:note<Enter>", "takes a text");
         press_warns(&ex, ":note @nan x<Enter>", "no instant");
         press_text(&ex,
-                   ":note @0.1 early, by hand<Enter>:band force 0.1<Enter>"
-                   ":trace force - voltage<Enter>:axis calm 10<Enter>:session "
+                   ":note @0.1 early, by hand<Enter>"
+                   ":trace force - voltage<Enter>:axis -1 2 10<Enter>:session "
                    "save %s<Enter>",
                    path);
     }
@@ -59,9 +59,8 @@ TEST(notes_are_kept_in_time_and_in_sessions)
     assert_int_equal(ex.model.note_count, 2);
     assert_string_equal(ex.model.notes[0].text, "early, by hand");
     check_close(ex.model.notes[1].time, 0.4, 1e-12);
-    assert_int_equal(ex.model.band.signal, SIGNAL_INDEX(force));
     assert_true(signal_is_derived(ex.view.panes.pane[PANES_OF_TABLE].signals[0]));
-    assert_int_equal(ex.view.panes.pane[PANES_OF_TABLE].scaling, AXIS_CALM);
+    check_close(ex.view.panes.pane[PANES_OF_TABLE].fixed.high, 2, 0);
 
     // no more than there is room for, and they can be dropped
     for (int i = 0; i < 40; i++) {
@@ -76,27 +75,23 @@ TEST(notes_are_kept_in_time_and_in_sessions)
     free(picture(&ex, 40, 12, GLYPHS_ASCII));
 }
 
-TEST(a_band_tells_where_it_is_left)
+// A session of an earlier lab says what the lab no longer has, which is passed over.
+TEST(what_an_earlier_lab_had_is_passed_over)
 {
+    const char *path = "earlier.session";
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, "b:set motor.voltage 1.1<Enter><End>:band force 0.1<Enter>");
-    const session *s = &ex.model.session;
-    double instant = (double)NAN;
-    sscanf(strstr(ex.input.message.text, "' at ") + 5, "%lf", &instant);
-
-    // before that instant the runs are closer, at it they are not
-    const sample *row = &s->run.trace.rows[trace_row_at(&s->run.trace, instant + 1e-5)];
-    const sample *other = &s->other.trace.rows[trace_row_at(&s->other.trace, instant)];
-    assert_true(fabs(row->force - other->force) > 0.1);
-    press(&ex, ":band force 9<Enter>");
-    assert_non_null(strstr(ex.input.message.text, "stays within"));
-    press(&ex, ":band force 0.5<Enter>");
-    assert_shows_everywhere(&ex, "force");
-    press_warns(&ex, ":band force<Enter>", "a signal and a value");
-    press_warns(&ex, ":band force -1<Enter>", "above 0");
-
-    // three runs in a row differ by their colours
-    assert_true(run_ink(1) != run_ink(2) && run_ink(2) != run_ink(3));
+    press_text(&ex, ":note @0.1 x<Enter>:session save %s<Enter>", path);
+    KEPT_TEXT(text) = file_text(path);
+    const char *line = strstr(text, "note @");
+    for (EACH_TEXT(c, "band force 0.1", "axis grow 1", "axis calm 1")) {
+        put_file(path, formatted("%.*s%s%s", (int)(line - text), text, *c,
+                                 strchr(line, '\n') != NULL ? strchr(line, '\n') : ""));
+        OPEN_EXPLORER(again, "compare/hybrid");
+        press_text(&again, ":session open %s<Enter>", path);
+        fail_if(strstr(again.input.message.text, "passed over") == NULL, "%s: %s", *c,
+                again.input.message.text);
+        assert_string_equal(again.model.session.base.name, "corrected/first-impact");
+    }
 }
 
 TEST(a_map_gives_what_single_runs_give)

@@ -105,21 +105,13 @@ TEST(test_runs_and_scenarios_are_clicked)
     assert_true(ex.model.pinned.runs[0].hidden);
     click(&ex, run.area.x + 20, run.area.y);
     assert_false(ex.model.pinned.runs[0].hidden);
-    press(&ex, "o<Home>");
-    hit_area list = part_on_screen(&ex, PANEL_SCENARIOS, PART_LINES);
-    const char *name = ex.view.scenarios.names[list.index + 1];
-    click(&ex, list.area.x + 3, list.area.y + 1);
-    assert_int_equal(ex.view.page, PANEL_SCENARIOS);
-    assert_string_equal(ex.view.scenarios.names[ex.view.scenarios.selected], name);
-    click(&ex, list.area.x + 3, list.area.y + 1);
-    assert_int_equal(ex.view.page, PANEL_NONE);
-    assert_string_equal(ex.model.session.base.name, name);
-    // a click outside the list closes it
-    press(&ex, "o");
-    (void)part_on_screen(&ex, PANEL_SCENARIOS, PART_LINES);
-    click(&ex, 1, 5);
-    assert_int_equal(ex.view.page, PANEL_NONE);
-    assert_string_equal(ex.model.session.base.name, name);
+
+    // a click in the list of what can be opened opens it
+    press(&ex, "ofig-3-4");
+    hit_area list = part_on_screen(&ex, PANEL_PALETTE, PART_LINES);
+    click(&ex, list.area.x + 3, list.area.y);
+    assert_false(ex.input.prompt.open);
+    assert_string_equal(ex.model.session.base.name, "thesis/fig-3-4");
 }
 
 TEST(test_the_wheel_scrolls_pages_and_panels)
@@ -176,38 +168,4 @@ TEST(test_random_pointing_does_no_harm)
                     to <=
                         ex.model.session.effective.parameters.run.duration * (1 + 1e-12));
     }
-}
-
-TEST(test_a_box_drawn_with_control_is_zoomed_into)
-{
-    OPEN_EXPLORER(ex, "corrected/first-impact");
-    const hit_area p = part_on_screen(&ex, PANEL_CURVES, PART_PANE);
-    const int x = p.area.x, y = p.area.y, width = p.area.width;
-    const value_range axis = ex.layout.axes[p.index];
-    pointer_event e = {POINTER_PRESS, x + width / 4, y + 1, false, true};
-    explorer_point(&ex, e);
-    e = (pointer_event){POINTER_DRAG, x + width / 2, y + p.area.height + 9, false, true};
-    explorer_point(&ex, e);
-    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
-    e.kind = POINTER_RELEASE;
-    explorer_point(&ex, e);
-
-    // instants from side to side, values from the second row down to the last
-    double from, to;
-    view_window(&ex.model, &ex.view, &from, &to);
-    check_close(from, 0.25, 0.02);
-    check_close(to, 0.5, 0.02);
-    const pane *of = &ex.view.panes.pane[p.index];
-    assert_int_equal(of->scaling, AXIS_FIXED);
-    check_close(of->fixed.low, axis.low, 1e-9);
-    check_close(of->fixed.high, axis.high - (axis.high - axis.low) / p.area.height, 1e-9);
-    assert_true(ex.model.session.now == 0);
-
-    // a box whose release was lost is over with the next press
-    e = (pointer_event){POINTER_PRESS, x + 1, y, false, true};
-    explorer_point(&ex, e);
-    click(&ex, x + width / 2, y);
-    view_window(&ex.model, &ex.view, &from, &to);
-    check_close(to - from, 0.25, 0.03);
-    check_close(ex.model.session.now, 0.375, 0.02);
 }

@@ -93,13 +93,13 @@ TEST(test_hidden_runs_are_not_drawn)
     assert_int_equal(model_run_count(&ex.model), 3);
     press(&ex, ":hide 1<Enter>");
     assert_int_equal(model_run_count(&ex.model), 2);
-    assert_string_equal(model_run_name(&ex.model, 1), "k2 5");
+    assert_string_equal(ex.model.pinned.runs[1].name, "k2 5");
 
     // by keys on the page, and back
     press(&ex, "R<Up><Up> <Esc>");
     assert_int_equal(model_run_count(&ex.model), 3);
     press(&ex, ":rename 1 soft arm<Enter>");
-    assert_string_equal(model_run_name(&ex.model, 1), "soft arm");
+    assert_string_equal(ex.model.pinned.runs[0].name, "soft arm");
 }
 
 TEST(test_a_run_of_a_few_rows_is_pinned_too)

@@ -23,8 +23,8 @@ TEST(test_what_was_done_comes_back)
         "b:open compare/hybrid<Enter>:pin with \u03b8<Enter>:set control.force "
         "1.37<Enter>:seek 0.35<Enter>:set control.force 2.1<Enter>:push "
         "0.003<Enter>b:hide 2<Enter>:set control.transition_time 0.2<Enter>:trace "
-        "gap_velocity<Enter>:phase gap force<Enter>:axis -1 3 1<Enter>:axis grow "
-        "3<Enter>:signal hub_angle 2<Enter>:limit force 2.5<Enter>:zoom 0.1 "
+        "gap_velocity<Enter>:phase gap force<Enter>:axis -1 3 1<Enter>:axis -2 "
+        "2 3<Enter>:signal hub_angle 2<Enter>:limit force 2.5<Enter>:zoom 0.1 "
         "0.9<Enter>:mark 0.3<Enter>:seek 0.5<Enter>";
     SCOPED(explorer_finish) explorer ex;
     open_changed(&ex, "corrected/first-impact", "", HUGE_VAL);
@@ -55,11 +55,12 @@ TEST(test_what_was_done_comes_back)
     }
     check_close(again.view.panes.pane[0].fixed.high, 3, 0);
     assert_int_equal(again.view.panes.pane[1].hidden, ex.view.panes.pane[1].hidden);
-    assert_int_equal(again.view.panes.pane[2].scaling, ex.view.panes.pane[2].scaling);
+    check_close(again.view.panes.pane[2].fixed.low, -2, 0);
     assert_int_not_equal(again.view.panes.pane[1].hidden, 0);
     assert_int_equal(again.model.limit.signal, SIGNAL_INDEX(force));
     check_close(again.model.limit.bound, 2.5, 0);
-    assert_int_equal(again.view.panes.pane[2].scaling, AXIS_GROW);
+    assert_true(again.view.panes.pane[2].is_fixed);
+    assert_false(again.view.panes.pane[3].is_fixed);
 
     // saved a second time the file is the same
     assert_true(explorer_carry_out(&again, "session save lab.session"));

@@ -35,13 +35,13 @@ cmp plain.png elsewhere/plain.png || fail "the recipe's folder changes the pictu
 
 # changes from the start and in time, pushes, names, bounds, notes, hidden runs, zoom, views
 saved all.pdf 3 'set motor.voltage 0.5' branch 'seek 0.3' 'set motor.voltage 2' 'push 0.02' 'pin "zwei": <&> \' \
-    'set arm.k2 6' 'limit force 1.2' 'band force 0.3' 'zoom 0.2 0.6' 'note @0.4 a < b & "q"' 'mark 0.35' 'seek 0.5' \
+    'set arm.k2 6' 'limit force 1.2' 'zoom 0.2 0.6' 'note @0.4 a < b & "q"' 'mark 0.35' 'seek 0.5' \
     'phase force gap' 'spectrum hub_velocity' 'trace force - 2*voltage' 'signal last_velocity 3' 'axis 0 3 1'
 
 # measured data, residuals, other runs
 saved data.svg 1 'open compare/hybrid' branch 'set control.force 0.5' 'data bench.csv' 'residual force_reading' \
     'zoom 0.2 0.9' 'limit force 1.2'
-saved shifted.png 1 'open compare/hybrid' 'data bench.csv@0.05' 'axis calm 1'
+saved shifted.png 1 'open compare/hybrid' 'data bench.csv@0.05' 'axis fixed 1'
 saved difference.png 1 'open compare/hybrid' branch 'set control.force 0.5' 'difference 0.1'
 
 # sweeps: curves and their quantity, and a map

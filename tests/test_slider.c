@@ -95,7 +95,7 @@ TEST(test_clicks_select_and_the_wheel_nudges)
 {
     const int limit = PARAMETER_INDEX(motor.voltage_limit);
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":fold none<Enter>:set motor.voltage<Enter>");
+    press(&ex, "<Tab>");
     hit_area s = slider_of(&ex, limit);
     // the line of it, not its slider
     point(&ex, POINTER_PRESS, s.area.x - 10, s.area.y);

@@ -424,9 +424,9 @@ for size in 80x24 100x30 200x60; do
     ask ":note a hard one" "noted at"
     ask ":notes" "a hard one"
     mux send-keys Escape
+    ask ":difference 0.1" "differs by more than"
+    ask ":difference off" "the runs themselves"
     ask ":trace force - voltage" "force-voltage"
-    ask ":axis calm 10" "but for spikes"
-    ask ":band force 0.1" "leaves the band"
     ask ":data $folder/rows.csv" "shifted by"
     ask ":residual force" "trace 11 hides it"
     ask ":identify k2" "command"

@@ -236,21 +236,26 @@ static bool begins_with_one(const char *line, const char *words)
     return strstr(words, word) != NULL;
 }
 
-// Lines of files that an earlier lab wrote, about what the screen now does by itself.
-static const char outgrown[] = " colourby colours lanes closeup ";
+// Whether a line of a file that an earlier lab wrote is about what the screen now does by
+// itself.
+static bool is_outgrown(const char *line)
+{
+    return begins_with_one(line, " colourby colours lanes closeup band ") ||
+           g_str_has_prefix(line, "axis grow") || g_str_has_prefix(line, "axis calm");
+}
 
 // Carries out a line that says how runs are looked at, and none that does anything else.
 static bool carry_out_look(explorer_model *model, explorer_view *view,
                            explorer_input *input, const char *line)
 {
-    if (begins_with_one(line, " panes axis zoom mark trace phase spectrum signal limit "
-                              "data sweep metric # "
-                              "residual band note ")) {
-        return explorer_execute(model, view, input, line);
-    }
-    if (begins_with_one(line, outgrown)) {
+    if (is_outgrown(line)) {
         return act_refuse(input, "'%.60s' is passed over, the lab has no such choice now",
                           line);
+    }
+    if (begins_with_one(line, " panes axis zoom mark trace phase spectrum signal limit "
+                              "data sweep metric # "
+                              "residual note ")) {
+        return explorer_execute(model, view, input, line);
     }
     return act_refuse(input, "'%.60s' does not belong into a session", line);
 }
@@ -312,12 +317,12 @@ static bool execute_setting(explorer_model *model, explorer_view *view,
 {
     const int begin = (int)strspn(line, " \t");
     input->message.at = begin;
+    if (is_outgrown(line + begin)) {
+        return true; // :remember drops it
+    }
     if (line[begin] == '\0' || line[begin] == '#' ||
         begins_with_one(line + begin, remembered)) {
         return explorer_execute(model, view, input, line);
-    }
-    if (begins_with_one(line + begin, outgrown)) {
-        return true; // :remember drops it
     }
     return act_refuse(input, "this is no setting");
 }
@@ -372,10 +377,8 @@ static void write_axes_and_keys(const explorer_view *view, FILE *stream)
     // every pane but the user's own
     for (int i = 0; i < PANES_OF_TABLE; i++) {
         const pane *p = &view->panes.pane[i];
-        if (p->scaling == AXIS_FIXED) {
+        if (p->is_fixed) {
             fprintf(stream, "axis %.10g %.10g %d\n", p->fixed.low, p->fixed.high, i + 1);
-        } else if (p->scaling != AXIS_AUTO) {
-            fprintf(stream, "axis %s %d\n", axis_scaling_words[p->scaling], i + 1);
         }
     }
 

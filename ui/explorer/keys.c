@@ -88,18 +88,26 @@ static bool leaves(int key)
 static bool key_in_palette(const explorer_model *model, explorer_view *view,
                            const explorer_input *input, int key)
 {
+    enum { PAGE = 10 };
     if (!palette_shows(&input->prompt) || input->prompt.recalled > 0) {
         return false;
     }
+    int lines = 0;
     if (key == KEY_CODE_DOWN || key == ('n' & 0x1f)) {
-        act_move_in_palette(model, view, input, 1);
-        return true;
+        lines = 1;
+    } else if (key == KEY_CODE_PAGE_DOWN) {
+        lines = PAGE;
+    } else if (view->palette.selected < 0) {
+        return false;
+    } else if (key == KEY_CODE_UP || key == ('p' & 0x1f)) {
+        lines = -1;
+    } else if (key == KEY_CODE_PAGE_UP) {
+        lines = -PAGE;
     }
-    if ((key == KEY_CODE_UP || key == ('p' & 0x1f)) && view->palette.selected >= 0) {
-        act_move_in_palette(model, view, input, -1);
-        return true;
+    if (lines != 0) {
+        act_move_in_palette(model, view, input, lines);
     }
-    return false;
+    return lines != 0;
 }
 
 // Gives a key to the line; what has no room is said.
@@ -144,7 +152,7 @@ static void key_in_prompt(explorer *ex, int key)
             ex->view.palette.selected = 0;
             palette_take_path(&ex->view.files, p->text);
         } else {
-            ex->view.palette.selected = -1;
+            ex->view.palette = (palette_view){.selected = -1};
         }
     }
 }
@@ -158,7 +166,7 @@ static void key_in_filter(explorer *ex, int key)
     char *text = view->filters.text[filtered];
     if (key == KEY_CODE_ENTER) {
         view->filters.typing = PANEL_NONE;
-        if (filtered == PANEL_PARAMETERS && !view->parameters.on_heading) {
+        if (filtered == PANEL_PARAMETERS) {
             explorer_carry_out(ex, "edit");
         }
         return;
@@ -256,14 +264,14 @@ void explorer_key(explorer *ex, int key)
     if (recovery_answer(ex, key)) {
         return;
     }
-    const bool quits = key == ('c' & 0x1f) && ex->view.page != PANEL_SCENARIOS;
+    const bool quits = key == ('c' & 0x1f);
     if (ex->input.prompt.open) {
         key_in_prompt(ex, key);
     } else if (ex->view.filters.typing != PANEL_NONE) {
         key_in_filter(ex, key);
     } else if (key == ':') {
         prompt_open(&ex->input.prompt, NULL, "%s", "");
-        ex->view.palette.selected = -1;
+        ex->view.palette = (palette_view){.selected = -1};
         act_clear_message(&ex->input);
     } else if (ex->view.page != PANEL_NONE && !quits) {
         panel_key(&ex->model, &ex->view, &ex->input, key);
@@ -275,8 +283,7 @@ void explorer_key(explorer *ex, int key)
 void explorer_paste(explorer *ex, int character)
 {
     const explorer_view *view = &ex->view;
-    const bool typing = ex->input.prompt.open || view->filters.typing != PANEL_NONE ||
-                        (view->page == PANEL_SCENARIOS && view->scenarios.filtering);
+    const bool typing = ex->input.prompt.open || view->filters.typing != PANEL_NONE;
     if (!typing) {
         act_warn(&ex->input, "pasted text does nothing here, : opens the prompt for it");
     } else if (character == '\n' || character == '\r' || character == '\t') {
@@ -328,7 +335,6 @@ static void press(explorer *ex, pointer_event e)
     if (is_behind_page(&ex->view, hit.panel)) {
         ex->grip.hit = (hit_area){.panel = ex->view.page};
         ex->view.page = PANEL_NONE;
-        ex->view.scenarios.filtering = false;
         return;
     }
     if (hit.part == PART_HINT) {

@@ -57,10 +57,8 @@ static void add_pane(const explorer_model *model, const explorer_view *view,
     if (p->count == 0 || (own && !p->shown)) {
         return;
     }
-    if (p->scaling == AXIS_FIXED) {
+    if (p->is_fixed) {
         add_line(file, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high, number);
-    } else if (p->scaling != AXIS_AUTO) {
-        add_line(file, "axis %s %d", axis_scaling_words[p->scaling], number);
     }
 
     // hidden signals; a lesson hides signals of its own
@@ -147,11 +145,8 @@ static void add_looks(const explorer_model *model, const explorer_view *view,
         add_line(file, "note @%.17g %s", n->time, n->text);
     }
 
-    // colours, bounds, the mark
-    const solved_limit *band = &model->band, *limit = &model->limit;
-    if (band->signal >= 0) {
-        add_line(file, "band %s %.17g", signal_table[band->signal].name, band->bound);
-    }
+    // a bound, the mark
+    const solved_limit *limit = &model->limit;
     if (limit->signal >= 0) {
         add_line(file, "limit %s %.17g", signal_table[limit->signal].name, limit->bound);
     }

@@ -238,7 +238,7 @@ static status write_sources(const shown_recipe *r, fault *f)
 static void end_panel(const shown_recipe *r, int pane_index)
 {
     value_range axis;
-    if (r->view->panes.pane[pane_index].scaling != AXIS_AUTO &&
+    if (r->view->panes.pane[pane_index].is_fixed &&
         view_pane_axis(r->model, r->view, pane_index, &axis)) {
         write_pair(r, ", range: [", axis.low, axis.high);
     }
@@ -255,12 +255,11 @@ static void write_difference(const shown_recipe *r, int pane_index, int signal,
     end_panel(r, pane_index);
 }
 
-// Setpoints, limits and the band of a panel over time.
+// Setpoints and limits of a panel over time.
 static void write_bounds(const shown_recipe *r, const pane *p, int first)
 {
     shown_level levels[SHOWN_LEVELS];
-    const explorer_model *model = r->model;
-    const int count = model_levels(model, p, levels);
+    const int count = model_levels(r->model, p, levels);
     const char *before = ", levels: [{at: ";
     for (int i = 0; i < count; i++) {
         if (levels[i].signal != first) {
@@ -272,26 +271,15 @@ static void write_bounds(const shown_recipe *r, const pane *p, int first)
         before = ", {at: ";
     }
     fputs(before[2] == '{' ? "]" : "", r->stream);
-    if (model->band.signal == first && r->baseline >= 0) {
-        fprintf(r->stream, ", band: {round: run %d", r->baseline + 1);
-        write_value(r, ", tolerance: ", model->band.bound);
-        fputc('}', r->stream);
-    }
 }
 
-// The signals of a pane that are not hidden, that of the band first; returns how many.
-static int visible_signals(const shown_recipe *r, const pane *p,
-                           int signals[PANE_SIGNALS])
+// The signals of a pane that are not hidden; returns how many.
+static int visible_signals(const pane *p, int signals[PANE_SIGNALS])
 {
     int count = 0;
     for (int k = 0; k < p->count; k++) {
-        if (p->hidden >> k & 1) {
-            continue;
-        }
-        signals[count++] = p->signals[k];
-        if (p->signals[k] == r->model->band.signal) {
-            signals[count - 1] = signals[0];
-            signals[0] = p->signals[k];
+        if ((p->hidden >> k & 1) == 0) {
+            signals[count++] = p->signals[k];
         }
     }
     return count;
@@ -329,7 +317,7 @@ static void write_pane(const shown_recipe *r, int pane_index)
 {
     const pane *p = &r->view->panes.pane[pane_index];
     int signals[PANE_SIGNALS];
-    const int count = visible_signals(r, p, signals);
+    const int count = visible_signals(p, signals);
     const bool residual = p->view == VIEW_RESIDUAL;
     if (!residual && !model_subtracts(r->model)) {
         write_curves(r, pane_index, signals, count);

@@ -100,12 +100,10 @@ bool act_trace(explorer_model *model, explorer_view *view, explorer_input *input
                const char *argument);
 bool act_signal(explorer_view *view, explorer_input *input, const char *argument);
 bool act_limit(explorer_model *model, explorer_input *input, const char *argument);
-bool act_band(explorer_model *model, explorer_input *input, const char *argument);
 bool act_panes(explorer_view *view, explorer_input *input, const char *argument);
 
 // looking (view_actions.c)
 bool act_select(explorer_model *model, explorer_view *view, const char *argument);
-bool act_fold(explorer_view *view, explorer_input *input, const char *argument);
 bool act_changes(const explorer_model *model, explorer_view *view);
 // Opens a page at its beginning, with a filter ("": none), or closes it.
 bool act_page(explorer_view *view, panel_id page, const char *filter);
@@ -130,7 +128,6 @@ bool act_quit_now(explorer_input *input);
 bool act_stop(explorer_model *model, explorer_input *input);
 bool act_open(explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
-bool act_find(const explorer_model *model, explorer_view *view, const char *argument);
 bool act_allow(explorer_model *model, explorer_view *view, explorer_input *input);
 bool act_lesson(explorer_model *model, explorer_view *view, explorer_input *input,
                 const char *argument);
@@ -245,9 +242,6 @@ void act_scrub(explorer_model *model, explorer_view *view, double time);
 void act_zoom_at(const explorer_model *model, explorer_view *view, double factor,
                  double time);
 void act_pan_by(const explorer_model *model, explorer_view *view, double seconds);
-// Makes the part between two instants visible [s].
-bool act_zoom_between(const explorer_model *model, explorer_view *view,
-                      explorer_input *input, double from, double to);
 
 // Says what the last input changed: that the run stops with it, that it has no effect, or
 // the value.
@@ -326,10 +320,14 @@ void act_follow_lesson(explorer_model *model);
 
 // --- the palette -----------------------------------------------------------------------
 
-// Moves the selection up (-1) or down (1) within the list. Without words to search for it
-// may also move above the first entry.
+// Opens the palette with words to search for, on all there is or on what can be opened.
+void act_open_palette(explorer_view *view, explorer_input *input, palette_scope scope,
+                      const char *words);
+
+// Moves the selection up (negative) or down by some lines within the list. Without words
+// to search for it may also move above the first entry.
 void act_move_in_palette(const explorer_model *model, explorer_view *view,
-                         const explorer_input *input, int direction);
+                         const explorer_input *input, int lines);
 
 // --- axes of values --------------------------------------------------------------------
 

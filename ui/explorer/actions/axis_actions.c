@@ -26,14 +26,6 @@ void act_pan_by(const explorer_model *model, explorer_view *view, double seconds
     }
 }
 
-bool act_zoom_between(const explorer_model *model, explorer_view *view,
-                      explorer_input *input, double from, double to)
-{
-    view->window.adrift = true;
-    view_show_part(model, view, from, to);
-    return act_tell(input, "%.4g to %.4g s; 0 shows all of it, a all values", from, to);
-}
-
 // Zooms in or out about the cursor, or the middle of what is visible if the cursor is
 // outside.
 static void zoom_by(const explorer_model *model, explorer_view *view, double factor)
@@ -123,40 +115,34 @@ void act_shift_axis(const explorer_model *model, explorer_view *view, int index,
     }
 }
 
-// Scales a pane's axis in another way; a fixed one keeps the present range.
-static void set_scaling(const explorer_model *model, explorer_view *view, int index,
-                        axis_scaling scaling)
+// Keeps the present range of a pane's axis, or lets it follow what is visible.
+static void fix_axis(const explorer_model *model, explorer_view *view, int index,
+                     bool fixed)
 {
     pane *p = &view->panes.pane[index];
     value_range now;
-    if (scaling == AXIS_FIXED && view_pane_axis(model, view, index, &now)) {
+    if (!fixed) {
+        p->is_fixed = false;
+    } else if (view_pane_axis(model, view, index, &now)) {
         pane_fix_axis(p, now);
-    } else if (scaling != AXIS_FIXED) {
-        p->grown = value_range_empty;
-        p->scaling = scaling;
     }
 }
 
-// Says how a pane's axis is scaled.
+// Says what a pane's axis of values goes by.
 static bool tell_axis(const explorer_view *view, explorer_input *input, int index)
 {
-    static const char *const says[AXIS_SCALINGS] = {
-        [AXIS_AUTO] = "the range of what is visible",
-        [AXIS_GROW] = "the range of all that was seen, it only grows",
-        [AXIS_CALM] = "the range of what is visible, but for spikes"};
     const pane *p = &view->panes.pane[index];
-    if (p->scaling == AXIS_FIXED) {
+    if (p->is_fixed) {
         return act_tell(input, "pane %d: from %.4g to %.4g", index + 1, p->fixed.low,
                         p->fixed.high);
     }
-    return act_tell(input, "pane %d: %s", index + 1, says[p->scaling]);
+    return act_tell(input, "pane %d: the range of what is visible", index + 1);
 }
 
 static bool refuse_axis(explorer_input *input)
 {
-    return act_refuse(input,
-                      "axis takes auto, grow, calm, fixed, in, out, up, down or two "
-                      "limits, then a pane (its number, or all)");
+    return act_refuse(input, "axis takes auto, fixed, next, in, out, up, down or two "
+                             "limits, then a pane (its number, or all)");
 }
 
 // Gives a pane's axis two limits.
@@ -177,28 +163,16 @@ static bool set_limits(explorer_view *view, explorer_input *input, int index,
     return true;
 }
 
-// The scaling of a word, where "next" is the one after a pane's present one; -1 if the
-// word is none.
-static int scaling_of_word(const char *word, axis_scaling present)
-{
-    if (strcmp(word, "next") == 0) {
-        return ((int)present + 1) % AXIS_SCALINGS;
-    }
-    for (int i = 0; i < AXIS_SCALINGS; i++) {
-        if (strcmp(word, axis_scaling_words[i]) == 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
 // Scales or shifts a pane's axis as a word says.
 static bool change_axis(const explorer_model *model, explorer_view *view,
                         explorer_input *input, int index, const char *word)
 {
-    const int scaling = scaling_of_word(word, view->panes.pane[index].scaling);
-    if (scaling >= 0) {
-        set_scaling(model, view, index, (axis_scaling)scaling);
+    if (strcmp(word, "auto") == 0) {
+        fix_axis(model, view, index, false);
+    } else if (strcmp(word, "fixed") == 0) {
+        fix_axis(model, view, index, true);
+    } else if (strcmp(word, "next") == 0) {
+        fix_axis(model, view, index, !view->panes.pane[index].is_fixed);
     } else if (strcmp(word, "in") == 0) {
         act_scale_axis(model, view, index, 0.5, 0.5);
     } else if (strcmp(word, "out") == 0) {

@@ -74,7 +74,7 @@ bool act_set(explorer_model *model, explorer_view *view, explorer_input *input,
     }
 
     // without a value it is only selected
-    parameter_list_select(&view->parameters, (parameter_line){parameter, false});
+    view->parameters.parameter = parameter;
     if (value[0] == '\0') {
         return tell_parameter(model, input, parameter);
     }
@@ -142,11 +142,6 @@ bool act_nudge(explorer_model *model, const explorer_view *view, explorer_input 
         nudge_map(model, direction);
         return true;
     }
-    if (view->parameters.on_heading) {
-        return act_refuse(input,
-                          "no parameter is selected (arrows up and down select one)");
-    }
-
     // what is no number: a lock goes round its modes
     const int index = view->parameters.parameter;
     const parameter_info *info = &parameter_table[index];
@@ -233,13 +228,9 @@ bool act_edit(explorer_model *model, explorer_view *view, explorer_input *input,
         if (!find_parameter(input, argument, &index)) {
             return false;
         }
-        parameter_list_select(&view->parameters, (parameter_line){index, false});
+        view->parameters.parameter = index;
     } else if (view->side.panel == PANEL_SWEEP) {
         return take_swept(model, input);
-    }
-    if (view->parameters.on_heading) {
-        parameter_list_fold(&view->parameters, index);
-        return true;
     }
     return ask_value(model, input, index);
 }
@@ -340,7 +331,7 @@ void act_drag_slider(const explorer_model *model, explorer_view *view, int param
     }
     grip->held = true;
     grip->parameter = parameter;
-    parameter_list_select(&view->parameters, (parameter_line){parameter, false});
+    view->parameters.parameter = parameter;
     grip->value = slider_value(&grip->scale, parameter, share, cells);
 }
 

@@ -209,7 +209,6 @@ bool act_toggle_signal(explorer_view *view, explorer_input *input, int index, in
     assert(index >= 0 && index < PANES && k >= 0 && k < PANE_SIGNALS);
     pane *p = &view->panes.pane[index];
     p->hidden ^= 1u << k;
-    p->grown = value_range_empty;
     const char *name = signal_table[p->signals[k]].name;
     if (p->hidden >> k & 1) {
         return act_tell(input, "%s is hidden (K or a click on its legend shows it)",
@@ -273,73 +272,26 @@ bool act_signal(explorer_view *view, explorer_input *input, const char *argument
                       argument);
 }
 
-// Reads a signal and a value, or off, into a bound unless they are refused.
-static bool read_bound(explorer_input *input, const char *argument, const char *command,
-                       solved_limit *bound)
+bool act_limit(explorer_model *model, explorer_input *input, const char *argument)
 {
     char text[LINE_TEXT], *words[4];
-    solved_limit read = {.signal = -1, .quantity = -1};
+    solved_limit limit = {.signal = -1, .quantity = -1};
     if (strcmp(argument, "off") == 0) {
-        *bound = read;
+        model->limit = limit;
         return true;
     }
     if (act_split(argument, text, words) == 2) {
-        read.signal = signal_find_any(words[0]);
+        limit.signal = signal_find_any(words[0]);
     }
-    if (read.signal < 0) {
-        return act_refuse(input, "%s takes a signal and a value, such as force 2, or off",
-                          command);
+    if (limit.signal < 0) {
+        return act_refuse(input,
+                          "limit takes a signal and a value, such as force 2, or off");
     }
-    if (!act_read_number(input, words[1], &read.bound)) {
+    if (!act_read_number(input, words[1], &limit.bound)) {
         return false;
     }
-    *bound = read;
+    model->limit = limit;
     return true;
-}
-
-bool act_limit(explorer_model *model, explorer_input *input, const char *argument)
-{
-    return read_bound(input, argument, "limit", &model->limit);
-}
-
-// Says where the present run leaves the band round the baseline.
-static bool tell_band(const explorer_model *model, explorer_input *input)
-{
-    const solved_limit *band = &model->band;
-    const session *s = &model->session;
-    if (!s->has_other) {
-        return act_tell(input, "b pins the run that it is round");
-    }
-    const char *round = model_reference_name(model);
-    if (signal_is_derived(band->signal) || signal_is_state(band->signal)) {
-        return act_tell(input, "the band is round '%s'", round);
-    }
-
-    // the first instant beyond it
-    run_difference d = {.on = true};
-    difference_update(&d, 1, &s->run.trace, &s->other.trace);
-    const double first = difference_first_beyond(&d, band->signal, band->bound);
-    difference_finish(&d);
-    if (first < 0) {
-        return act_tell(input, "this run stays within the band round '%s'", round);
-    }
-    return act_tell(input, "this run leaves the band round '%s' at %.5f s", round, first);
-}
-
-bool act_band(explorer_model *model, explorer_input *input, const char *argument)
-{
-    solved_limit band;
-    if (!read_bound(input, argument, "band", &band)) {
-        return false;
-    }
-    if (band.signal >= 0 && !(band.bound > 0)) {
-        return act_refuse(input, "a band has a tolerance above 0");
-    }
-    model->band = band;
-    if (band.signal < 0) {
-        return act_tell(input, "no band");
-    }
-    return tell_band(model, input);
 }
 
 bool act_alone(explorer_view *view)

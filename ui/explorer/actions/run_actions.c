@@ -444,10 +444,11 @@ bool act_continue_sweep(explorer_model *model, explorer_input *input)
         return true;
     }
     const char *across = lab_sweep_is_map(sweep) ? " and < >" : "";
-    return act_tell(
-        input,
-        "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc ends it",
-        sweep->count, across);
+    return act_tell(input,
+                    "%d runs: arrows%s choose one, Enter opens it, :metric another "
+                    "quantity, Esc ends "
+                    "it",
+                    sweep->count, across);
 }
 
 // Proposes a sweep of the selected parameter, about its value if that is positive.

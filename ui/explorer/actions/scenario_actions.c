@@ -46,16 +46,18 @@ bool act_open_scenario(explorer_model *model, explorer_view *view, explorer_inpu
                     model->visits[model->present_visit - 1].from.base.name);
 }
 
-// The list of scenarios with the present one selected.
-static void open_list(const explorer_model *model, explorer_view *view)
+// The list of what can be opened, with the present scenario selected.
+static void open_list(const explorer_model *model, explorer_view *view,
+                      explorer_input *input)
 {
-    scenario_menu *menu = &view->scenarios;
-    const int present = scenario_menu_find(menu, model->session.base.name);
-    menu->selected = present > 0 ? present : 0;
-    menu->filter[0] = '\0';
-    scenario_menu_read_titles(menu);
-    view->page = PANEL_SCENARIOS;
-    view->drawn.first_scenario = -1;
+    static palette_entry entries[PALETTE_ENTRIES];
+    act_open_palette(view, input, SCOPE_SCENARIOS, "");
+    const int present = scenario_menu_find(&view->scenarios, model->session.base.name);
+    for (int i = palette_find(model, view, "", entries); i-- > 0;) {
+        if (entries[i].kind != PALETTE_FILE && entries[i].index == present) {
+            view->palette.selected = i;
+        }
+    }
 }
 
 bool act_open(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -63,7 +65,7 @@ bool act_open(explorer_model *model, explorer_view *view, explorer_input *input,
 {
     const scenario_menu *menu = &view->scenarios;
     if (argument[0] == '\0') {
-        open_list(model, view);
+        open_list(model, view, input);
         return true;
     }
 
@@ -80,15 +82,6 @@ bool act_open(explorer_model *model, explorer_view *view, explorer_input *input,
     const int at = scenario_menu_find(menu, model->session.base.name) + by;
     return act_open_scenario(model, view, input,
                              menu->names[(at + 2 * menu->count) % menu->count]);
-}
-
-bool act_find(const explorer_model *model, explorer_view *view, const char *argument)
-{
-    open_list(model, view);
-    snprintf(view->scenarios.filter, sizeof view->scenarios.filter, "%s", argument);
-    view->scenarios.filtering = true;
-    scenario_menu_move(&view->scenarios, 0);
-    return true;
 }
 
 bool act_stop(explorer_model *model, explorer_input *input)
@@ -171,8 +164,7 @@ bool act_lesson(explorer_model *model, explorer_view *view, explorer_input *inpu
 {
     // without a name the list of them, or the word that ends one
     if (argument[0] == '\0') {
-        act_find(model, view, "lesson");
-        view->scenarios.filtering = false;
+        act_open_palette(view, input, SCOPE_LESSONS, "");
         return true;
     }
     if (strcmp(argument, "off") == 0) {

@@ -29,65 +29,22 @@ void act_select_line(explorer_model *model, explorer_view *view, int direction)
         return;
     }
 
-    // the list of parameters has two ends, without a way around
+    // the list of parameters has two ends, without a way around; headings are passed over
     parameter_line lines[PARAMETER_LINES];
     int selected;
     const int count = view_parameter_lines(view, lines, &selected);
-    const int next = selected + direction;
+    int next = selected + direction;
+    while (next >= 0 && next < count && lines[next].heading) {
+        next += direction;
+    }
     if (next >= 0 && next < count) {
-        parameter_list_select(&view->parameters, lines[next]);
+        view->parameters.parameter = lines[next].parameter;
     }
 }
 
 bool act_select(explorer_model *model, explorer_view *view, const char *argument)
 {
     act_select_line(model, view, argument[0] == '-' ? -1 : 1);
-    return true;
-}
-
-// The group of a name; -1 if there is none.
-static int group_of_name(const char *wanted)
-{
-    for (int i = 0; i < parameter_count; i++) {
-        char name[PARAMETER_NAME];
-        parameter_group_name(i, name, sizeof name);
-        if (strcmp(name, wanted) == 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
-static void fold_all(parameter_list *list, bool folded)
-{
-    list->on_heading = folded;
-    for (int i = 0; i < parameter_count; i++) {
-        list->folded[i] = folded;
-    }
-}
-
-bool act_fold(explorer_view *view, explorer_input *input, const char *argument)
-{
-    parameter_list *list = &view->parameters;
-    list->all = true;
-    if (strcmp(argument, "all") == 0) {
-        fold_all(list, true);
-        return true;
-    }
-    if (strcmp(argument, "none") == 0) {
-        fold_all(list, false);
-        return true;
-    }
-
-    // one group by its name, or that of the selected parameter
-    int group = list->parameter;
-    if (argument[0] != '\0') {
-        group = group_of_name(argument);
-    }
-    if (group < 0) {
-        return act_refuse(input, "there is no group '%s' of parameters", argument);
-    }
-    parameter_list_fold(list, group);
     return true;
 }
 
@@ -137,13 +94,12 @@ void act_select_filtered(const explorer_model *model, explorer_view *view, panel
     parameter_line lines[PARAMETER_LINES];
     int selected;
     const int count = view_parameter_lines(view, lines, &selected);
-    if (count > 0 && !lines[selected].heading &&
-        lines[selected].parameter == view->parameters.parameter) {
+    if (count > 0 && !lines[selected].heading) {
         return;
     }
     const int line = first_useful_line(model, lines, count);
     if (line >= 0) {
-        parameter_list_select(&view->parameters, lines[line]);
+        view->parameters.parameter = lines[line].parameter;
     }
 }
 
@@ -174,15 +130,11 @@ bool act_mark(const explorer_model *model, explorer_view *view, explorer_input *
                            "from it to the cursor");
 }
 
-// Whether Tab passes over a panel: one of the side with nothing to show, or one of the
-// stack that has room there.
-static bool is_passed_over(const explorer_model *model, const explorer_view *view,
-                           panel_id id)
+// Whether Tab passes over a panel: one that is not of the side, or has nothing to show.
+static bool is_passed_over(const explorer_model *model, panel_id id)
 {
-    if (panel_place_of(id) == PLACE_SIDE) {
-        return id == PANEL_SWEEP && !lab_sweep_is_on(&model->sweep);
-    }
-    return !view->drawn.folded[id];
+    return panel_place_of(id) != PLACE_SIDE ||
+           (id == PANEL_SWEEP && !lab_sweep_is_on(&model->sweep));
 }
 
 bool act_side(const explorer_model *model, explorer_view *view)
@@ -197,7 +149,7 @@ bool act_side(const explorer_model *model, explorer_view *view)
     }
     view->parameters.all = false;
 
-    // the panels of the side, then those that are folded for want of room
+    // the panels of the side
     panel_id next = view->side.panel;
     do {
         if (next + 1 == PANEL_IDS) {
@@ -205,7 +157,7 @@ bool act_side(const explorer_model *model, explorer_view *view)
         } else {
             next = (panel_id)(next + 1);
         }
-    } while (next != PANEL_NONE && is_passed_over(model, view, next));
+    } while (next != PANEL_NONE && is_passed_over(model, next));
 
     // a narrow screen: curves, each panel of the side, curves again
     if (narrow && (!view->side.in_front || next == PANEL_NONE)) {
@@ -400,25 +352,31 @@ bool act_quit_now(explorer_input *input)
 
 // --- the palette -----------------------------------------------------------------------
 
-bool act_palette(explorer_view *view, explorer_input *input, const char *argument)
+void act_open_palette(explorer_view *view, explorer_input *input, palette_scope scope,
+                      const char *words)
 {
     scenario_menu_read_titles(&view->scenarios);
     palette_read_files(&view->files);
-    palette_take_path(&view->files, argument);
-    prompt_open(&input->prompt, NULL, "%s", argument);
+    palette_take_path(&view->files, words);
+    prompt_open(&input->prompt, NULL, "%s", words);
     input->prompt.searches = true;
-    view->palette = (palette_view){0};
-    return act_clear_message(input);
+    view->palette = (palette_view){.scope = scope};
+    act_clear_message(input);
+}
+
+bool act_palette(explorer_view *view, explorer_input *input, const char *argument)
+{
+    act_open_palette(view, input, SCOPE_ALL, argument);
+    return true;
 }
 
 void act_move_in_palette(const explorer_model *model, explorer_view *view,
-                         const explorer_input *input, int direction)
+                         const explorer_input *input, int lines)
 {
-    assert(direction == 1 || direction == -1);
     static palette_entry entries[PALETTE_ENTRIES];
     const int count = palette_find(model, view, input->prompt.text, entries);
     const int least = input->prompt.searches ? 0 : -1;
-    int at = view->palette.selected + direction;
+    int at = view->palette.selected + lines;
     if (at >= count) {
         at = count - 1;
     }

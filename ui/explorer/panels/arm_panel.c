@@ -397,8 +397,8 @@ static void draw_force_in_words(const explorer_model *model, const stage *g)
     }
 }
 
-// Texts about the arm: the force next to the tip; in the last row the state of the hub,
-// the hand that pulls, and what a sign means.
+// Texts about the arm: the force next to the tip; in the last row the hand that pulls,
+// and what a sign means.
 static void draw_words(const explorer_model *model, const explorer_view *view,
                        const stage *g, area a)
 {
@@ -414,9 +414,6 @@ static void draw_words(const explorer_model *model, const explorer_view *view,
     if (view->pull.held) {
         screen_print(s, a.x + 14, last_row, a.width - 34, INK_FORCE, "pulled with %.3g N",
                      view->pull.force);
-    }
-    if (session_sample(&model->session)->sticking != 0) {
-        screen_text(s, a.x + 2, last_row, 12, INK_DIM, "hub sticks");
     }
 }
 

@@ -165,24 +165,31 @@ static const char *state_of_run(const session *e, bool playing)
 static void add_speed(bar *b, const playback *p)
 {
     if (!p->playing) {
-        bar_add(b, 3, "\u00d7%g", p->speed);
+        bar_add(b, 4, "\u00d7%g", p->speed);
     } else if (p->slowed > 1.05) {
-        bar_add(b, 3, "\u00d7%g slow motion (%.2g)", p->speed, p->measured);
+        bar_add(b, 4, "\u00d7%g slow motion (%.2g)", p->speed, p->measured);
     } else {
-        bar_add(b, 3, "\u00d7%g (%.3g)", p->speed, p->measured);
+        bar_add(b, 4, "\u00d7%g (%.3g)", p->speed, p->measured);
     }
 }
 
-// Which equations are solved, and by which law the arm is driven.
-static void add_equations(bar *b, const parameters *p)
+// By which law the arm is driven, its mode, and whether it is held in that.
+static void add_law(bar *b, const explorer_model *model)
 {
-    char equations[64];
-    parameter_format(p, PARAMETER_INDEX(arm.model), equations, sizeof equations);
-    if (p->control.law != LAW_NONE) {
-        bar_add(b, 4, "%.40s, %.38s", equations, control_law_table[p->control.law].word);
-    } else {
-        bar_add(b, 4, "%.40s", equations);
+    const control_parameters c = model_parameters(model).control;
+    const double mode = session_sample(&model->session)->controller_mode;
+    const char *law = control_law_table[c.law].word;
+    char name[MODE_NAME_SIZE];
+    if (c.law == LAW_NONE) {
+        return;
     }
+    if (model->modes.count == 0) {
+        bar_add(b, 2, "%.40s", law);
+        return;
+    }
+    law_mode_name(&model->modes, mode, name, sizeof name);
+    const bool held = c.lock[0] != '\0' && strcmp(c.lock, "none") != 0;
+    bar_add(b, 2, "%.40s: %.40s%s", law, name, held ? ", locked" : "");
 }
 
 // The parts of the status, each with what it is worth where not all fit.
@@ -213,11 +220,14 @@ static bar status_bar(const explorer_model *model, const explorer_view *view)
     bar_add(&b, 5, "row %zu/%zu", e->row + 1, e->run.trace.row_count);
     add_speed(&b, &view->playback);
 
-    // the arm there
-    add_equations(&b, p);
+    // the law and the arm there, and which equations are solved
+    char equations[64];
+    add_law(&b, model);
+    parameter_format(p, PARAMETER_INDEX(arm.model), equations, sizeof equations);
+    bar_add(&b, 6, "%s", equations);
     const char *contact = row->contact != 0 ? "in contact" : "free flight";
     const char *hub = row->sticking != 0 ? ", hub sticks" : "";
-    bar_add(&b, 2, "%s%s", contact, hub);
+    bar_add(&b, 3, "%s%s", contact, hub);
     if (view->mark.set) {
         bar_add(&b, 3, "from mark %.5g s", e->now - view->mark.time);
     }
@@ -424,7 +434,7 @@ static void draw_too_small(screen *s)
 
 // --- the whole screen ------------------------------------------------------------------
 
-// The width of the stack on the right; from 120 on there is room for sliders next to the
+// The width of the side on the right; from 120 on there is room for sliders next to the
 // values.
 static int side_width(int screen_width)
 {
@@ -443,76 +453,22 @@ static int side_width(int screen_width)
     return 0;
 }
 
-// Folds a panel of the stack, if it has rows, and returns how many those were.
-static int fold_panel(layout *lay, int rows[PANEL_IDS], panel_id id)
+// The right side: the chosen panel, and what a touch would bring below it where there is
+// room; of a sweep and of statistics there is more to show.
+static void draw_side(const explorer_model *model, const explorer_view *view, layout *lay,
+                      screen *s, area a)
 {
-    const int freed = rows[id];
-    if (freed > 0) {
-        lay->drawn.folded[id] = true;
-        rows[id] = 0;
-    }
-    return freed;
-}
-
-// What is folded, in the lower edge of the chosen panel.
-static void draw_tabs(const layout *lay, screen *s, area a)
-{
-    char text[96] = " Tab: ";
-    const char *joint = "";
-    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
-        if (lay->drawn.folded[id]) {
-            text_add(text, sizeof text, "%s%s", joint, panel_of(id)->name);
-            joint = ", ";
-        }
-    }
-    const bool any = joint[0] != '\0';
-    if (any && a.height > 1) {
-        text_add(text, sizeof text, " ");
-        screen_text(s, a.x + 1, a.y + a.height - 1, a.width - 2, INK_DIM, text);
-    }
-}
-
-// The rows of the panels below the chosen one, which has at least a few; returns their
-// sum. Of a sweep and of statistics there is more to show, so the others are folded.
-static int rows_of_stack(const explorer_model *model, const explorer_view *view,
-                         layout *lay, screen_size body, int rows[PANEL_IDS])
-{
-    enum { LEAST = 5 };
     const panel_id chosen = view->side.panel;
-    const bool chosen_has_much = chosen == PANEL_SWEEP || chosen == PANEL_STATISTICS;
-    int sum = 0;
-    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
-        rows[id] = 0;
-        if (panel_place_of(id) != PLACE_STACK || id == chosen) {
-            continue;
-        }
-        rows[id] = panel_of(id)->rows(model, view, body);
-        if (chosen_has_much || body.height - sum - rows[id] < LEAST) {
-            fold_panel(lay, rows, id);
-        }
-        sum += rows[id];
+    const bool has_much = chosen == PANEL_SWEEP || chosen == PANEL_STATISTICS;
+    int rows = 0;
+    if (!has_much) {
+        rows = predictors_panel.rows(model, view, (screen_size){a.width, a.height});
     }
-    return sum;
-}
-
-// The right side: the chosen panel, and below it all that have room.
-static void draw_stack(const explorer_model *model, const explorer_view *view,
-                       layout *lay, screen *s, area a)
-{
-    int rows[PANEL_IDS] = {0};
-    const screen_size body = {s->width, a.height};
-    const int left = a.height - rows_of_stack(model, view, lay, body, rows);
-
-    // the chosen one has what the others leave
-    area at = {a.x, a.y, a.width, left};
-    panel_draw(view->side.panel, model, view, lay, s, at);
-    draw_tabs(lay, s, at);
-    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
-        at.y += at.height;
-        at.height = rows[id];
-        if (rows[id] > 0) {
-            panel_draw(id, model, view, lay, s, at);
-        }
+    area above = a;
+    above.height -= rows;
+    panel_draw(chosen, model, view, lay, s, above);
+    if (rows > 0) {
+        panel_draw(PANEL_PREDICTORS, model, view, lay, s, area_below(a, above.height));
     }
 }
 
@@ -557,7 +513,7 @@ static int rows_of_arm(int height)
     return rows;
 }
 
-// The arm with the curves below it on the left, the stack on the right.
+// The arm with the curves below it on the left, the side panel on the right.
 static void draw_panels(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area body)
 {
@@ -574,12 +530,12 @@ static void draw_panels(const explorer_model *model, const explorer_view *view,
     // on a narrow screen the side takes the place of the curves
     const area below = {body.x, body.y + arm_height, width, body.height - arm_height};
     if (side == 0 && view->side.in_front) {
-        draw_stack(model, view, lay, s, below);
+        draw_side(model, view, lay, s, below);
         return;
     }
     panel_draw(PANEL_CURVES, model, view, lay, s, below);
     if (side > 0) {
-        draw_stack(model, view, lay, s, (area){width, body.y, side, body.height});
+        draw_side(model, view, lay, s, (area){width, body.y, side, body.height});
     }
 }
 
@@ -599,7 +555,6 @@ void compose_screen(const explorer_model *model, const explorer_view *view,
     lay->plot = (area){0};
     lay->drawn = view->drawn;
     lay->drawn.stage = (arm_stage){0};
-    memset(lay->drawn.folded, 0, sizeof lay->drawn.folded);
     if (!compose_fits((screen_size){s->width, s->height})) {
         draw_too_small(s);
         return;

@@ -44,59 +44,6 @@ static void turn_wheel_on_curves(const explorer_model *model, explorer_view *vie
     }
 }
 
-// The nearest number to a value that is not beyond two others.
-static int kept_between(int value, int low, int high)
-{
-    if (value < low) {
-        return low;
-    }
-    if (value > high) {
-        return high;
-    }
-    return value;
-}
-
-// Shows the values of a pane between two rows of its area.
-static void show_rows(const explorer_model *model, explorer_view *view, int index, area a,
-                      int upper, int lower)
-{
-    value_range axis;
-    if (!view_pane_axis(model, view, index, &axis)) {
-        return;
-    }
-    const double height = axis.high - axis.low;
-    const double top = (double)(upper - a.y) / a.height;
-    const double bottom = (double)(lower + 1 - a.y) / a.height;
-    const value_range shown = {axis.high - bottom * height, axis.high - top * height};
-    pane_fix_axis(&view->panes.pane[index], shown);
-}
-
-// With Control held a drag draws a box; letting go shows its instants, and its values
-// where it has more than a row.
-static bool drag_box(const explorer_model *model, explorer_view *view,
-                     explorer_input *input, const panel_gesture *g)
-{
-    zoom_box *b = &view->box;
-    const area a = g->hit.area;
-    if (g->event.kind == POINTER_PRESS) {
-        *b = (zoom_box){.pane = g->hit.index, .x0 = g->event.x, .y0 = g->event.y};
-    }
-    b->x1 = kept_between(g->event.x, a.x, a.x + a.width - 1);
-    b->y1 = kept_between(g->event.y, a.y, a.y + a.height - 1);
-    b->held = g->event.kind != POINTER_RELEASE;
-    if (b->held || b->x1 == b->x0) {
-        return true;
-    }
-
-    if (b->y0 < b->y1) {
-        show_rows(model, view, b->pane, a, b->y0, b->y1);
-    } else if (b->y0 > b->y1) {
-        show_rows(model, view, b->pane, a, b->y1, b->y0);
-    }
-    const double t0 = time_at(model, view, a, b->x0), t1 = time_at(model, view, a, b->x1);
-    return act_zoom_between(model, view, input, fmin(t0, t1), fmax(t0, t1));
-}
-
 // The cursor goes where the mouse is.
 static bool scrub(explorer_model *model, explorer_view *view, const panel_gesture *g)
 {
@@ -105,21 +52,6 @@ static bool scrub(explorer_model *model, explorer_view *view, const panel_gestur
     }
     act_scrub(model, view, time_at(model, view, g->hit.area, g->event.x));
     return true;
-}
-
-// Over the curves a drag moves the cursor, with Control it draws a box.
-static bool point_at_plot(explorer_model *model, explorer_view *view,
-                          explorer_input *input, const panel_gesture *g)
-{
-    if (g->event.kind == POINTER_PRESS) {
-        const bool in_pane = g->hit.part == PART_PANE &&
-                             pane_is_over_time(&view->panes.pane[g->hit.index]);
-        view->box.held = in_pane && g->event.control;
-    }
-    if (view->box.held) {
-        return drag_box(model, view, input, g);
-    }
-    return scrub(model, view, g);
 }
 
 // The axis is dragged; a click without a drag moves the cursor.
@@ -183,7 +115,6 @@ bool curves_point(explorer_model *model, explorer_view *view, explorer_input *in
     switch (part) {
     case PART_BODY:
     case PART_PANE:
-        return point_at_plot(model, view, input, g);
     case PART_LANES:
         return scrub(model, view, g);
     case PART_TIME_AXIS:

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/controller.h"
 #include "ui/terminal/pictures.h"
 
 // --- titles ----------------------------------------------------------------------------
@@ -85,22 +84,6 @@ static bool is_hidden(const pane *p, int k)
 // How a legend says what its curves are, most words first.
 typedef enum legend { LEGEND_NAMES, LEGEND_SYMBOLS, LEGEND_TIGHT, LEGEND_BARE } legend;
 
-// The name of a mode of the law, NULL for none and for a law that is not one of ours.
-static const char *own_mode_name(const explorer_model *model, double mode)
-{
-    const controller *law =
-        controller_of(model->session.effective.parameters.control.law);
-    if (law == NULL || law->modes == NULL) {
-        return NULL;
-    }
-    for (int i = 0; law->modes[i] != NULL; i++) {
-        if (mode == i) {
-            return law->modes[i];
-        }
-    }
-    return NULL;
-}
-
 // The value of a signal at the cursor, of the first run that a pane shows.
 static double value_at_cursor(const explorer_model *model, const pane *p, int signal)
 {
@@ -112,18 +95,16 @@ static double value_at_cursor(const explorer_model *model, const pane *p, int si
     return signal_value(&t->rows[model_row(model, t)], signal);
 }
 
-// What a legend says of a signal's value: a mode by its name where the law is one of
-// ours, else a number; brief ones have up to three digits.
+// What a legend says of a signal's value: a mode by its name, else a number; brief ones
+// have up to three digits.
 static void format_legend_value(const explorer_model *model, const pane *p, int signal,
                                 bool brief, char *text, size_t size)
 {
     const double value = value_at_cursor(model, p, signal);
-    if (strcmp(signal_table[signal].name, "controller_mode") == 0) {
-        const char *name = own_mode_name(model, value);
-        if (name != NULL) {
-            snprintf(text, size, "%s", name);
-            return;
-        }
+    if (signal == SIGNAL_INDEX(controller_mode) && value >= 0 &&
+        value < model->modes.count) {
+        law_mode_name(&model->modes, value, text, size);
+        return;
     }
 
     // as many digits as six cells have room for
@@ -268,10 +249,9 @@ static void draw_pane_title(const explorer_model *model, const explorer_view *vi
     draw_pane_number(view, s, index, a);
 
     // what the axis does, and what is subtracted
-    static const char *const axes[] = {"", "grows", "fixed", "calm"};
     area rest = area_right(area_row(a, 0), LABEL_WIDTH + 1);
-    if (p->scaling != AXIS_AUTO) {
-        rest = draw_end_of_title(s, rest, 30, 5, INK_DIM, axes[p->scaling]);
+    if (p->is_fixed) {
+        rest = draw_end_of_title(s, rest, 30, 5, INK_DIM, "fixed");
     }
     if (p->view == VIEW_RESIDUAL) {
         rest = draw_end_of_title(s, rest, 40, 14, INK_EVENT, "data minus run");
@@ -388,32 +368,6 @@ static void draw_levels(const explorer_model *model, const plot_frame *f, screen
     }
 }
 
-// A signal of the baseline, shifted by an amount.
-static void draw_shifted(const explorer_model *model, const plot_frame *f, int signal,
-                         double by)
-{
-    plot_frame shifted = *f;
-    shifted.axis.low -= by;
-    shifted.axis.high -= by;
-    shifted.pixels.low -= by;
-    shifted.pixels.high -= by;
-    shifted.pattern = style_pattern(LINE_DOTTED);
-    shifted.colour = INK_FRAME;
-    plot_frame_signal(&shifted, &model->session.other.trace, signal, f->to, NULL);
-}
-
-// The tolerance on both sides of the baseline: its curve, shifted.
-static void draw_band(const explorer_model *model, const plot_frame *f, const pane *p)
-{
-    const solved_limit *band = &model->band;
-    for (int k = 0; k < p->count; k++) {
-        if (p->signals[k] == band->signal && !is_hidden(p, k)) {
-            draw_shifted(model, f, band->signal, -band->bound);
-            draw_shifted(model, f, band->signal, band->bound);
-        }
-    }
-}
-
 // What the curves of a pane over time are compared with: setpoints, limits, tolerances.
 static void draw_bounds(const explorer_model *model, const plot_frame *f, screen *s,
                         const pane *p)
@@ -422,9 +376,6 @@ static void draw_bounds(const explorer_model *model, const plot_frame *f, screen
         return;
     }
     if (!model_subtracts(model)) {
-        if (model->session.has_other) {
-            draw_band(model, f, p);
-        }
         draw_levels(model, f, s, p);
         return;
     }
@@ -601,14 +552,6 @@ static void draw_panes(const explorer_model *model, const explorer_view *view,
     }
 }
 
-// The box that the mouse draws.
-static void tint_box(const zoom_box *b, screen *s)
-{
-    const int left = b->x0 < b->x1 ? b->x0 : b->x1, width = abs(b->x1 - b->x0) + 1;
-    const int top = b->y0 < b->y1 ? b->y0 : b->y1, height = abs(b->y1 - b->y0) + 1;
-    area_tint(s, (area){left, top, width, height}, INK_SELECTED);
-}
-
 // The panes with the time axis and the lanes below them.
 static void draw_curves(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area a)
@@ -641,9 +584,6 @@ static void draw_curves(const explorer_model *model, const explorer_view *view,
     lay->plot = (area){plot.x, plot.y, plot.width, panes_height + axis_height};
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_BODY, 0, plot});
     draw_panes(model, view, lay, s, panes, most);
-    if (view->box.held) {
-        tint_box(&view->box, s);
-    }
     const area marked = draw_time_axis(model, view, s, axis);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_TIME_AXIS, 0, marked});
     draw_lanes(model, view, lay, s, lanes);

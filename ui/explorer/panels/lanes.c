@@ -1,5 +1,5 @@
-// The lanes below the curves, on their time axis: contact of the other runs, the modes of
-// the law. Above them the map of the run, where only a part of it is visible.
+// The lane below the curves, on their time axis: the modes of the law. Above it the map
+// of the run, where only a part of it is visible.
 #include "ui/explorer/panels/plot.h"
 
 #include <math.h>
@@ -21,11 +21,6 @@ int lanes_rows(const explorer_model *model, const explorer_view *view, int heigh
     }
     if (model_has_law(model)) {
         wanted++;
-    }
-    for (int run = 1; run < model_run_count(model); run++) {
-        if (model_run_name(model, run)[0] != '\0') {
-            wanted++;
-        }
     }
 
     // what the curves leave to them
@@ -148,24 +143,11 @@ void draw_lanes(const explorer_model *model, const explorer_view *view, layout *
         a = area_below(a, 1);
     }
 
-    // then as many lanes as have a row
+    // then the lane
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LANES, 0,
                                    area_right(a, LABEL_WIDTH + 1)});
     if (a.height > 0 && model_has_law(model)) {
         screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "mode");
         draw_modes(model, view, s, area_right(area_row(a, 0), LABEL_WIDTH + 1));
-        a = area_below(a, 1);
-    }
-    for (int i = 1; i < model_run_count(model) && a.height > 0; i++) {
-        const shown_run run = model_run(model, i);
-        const ink shade = run_ink(shown_run_rank(&run));
-        if (model_run_name(model, i)[0] == '\0') {
-            continue;
-        }
-        screen_print(s, a.x, a.y, LABEL_WIDTH, shade, "\u2592 %s",
-                     model_run_name(model, i));
-        draw_contact(model, view, s, area_right(area_row(a, 0), LABEL_WIDTH + 1),
-                     run.trace, (double)INFINITY, shade);
-        a = area_below(a, 1);
     }
 }

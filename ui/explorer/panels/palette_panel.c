@@ -58,9 +58,10 @@ void draw_palette(const explorer_model *model, const explorer_view *view, const 
     static palette_entry entries[PALETTE_ENTRIES];
     const int count = palette_find(model, view, p->text, entries);
 
-    // while only a first word is typed a list without entries would be in the way
+    // while only a first word is typed a list without entries would be in the way; what
+    // can be opened is looked through, and has all the room there is
     int rows = count;
-    if (rows > MOST_ENTRIES) {
+    if (rows > MOST_ENTRIES && view->palette.scope == SCOPE_ALL) {
         rows = MOST_ENTRIES;
     }
     if (rows > a.height - 4) {
@@ -94,7 +95,8 @@ static bool point_at_palette(explorer_model *model, explorer_view *view,
 {
     const int wheel = pointer_wheel(g->event);
     if (g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES) {
-        view->palette = (palette_view){gesture_line(g), true};
+        view->palette.selected = gesture_line(g);
+        view->palette.picked = true;
         return true;
     }
     if (wheel != 0) {

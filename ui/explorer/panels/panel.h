@@ -69,7 +69,6 @@ enum { HIT_AREAS = 256 };
 typedef enum hit_part {
     PART_BODY,      // the panel itself, or its plot
     PART_LINES,     // its lines; index: the first one shown, or the line's own
-    PART_HEADING,   // of a group of lines; index: its first parameter
     PART_SLIDER,    // index: the parameter
     PART_LABELS,    // an axis of values; index: the pane
     PART_PANE,      // the curves of a pane; index: the pane
@@ -174,8 +173,8 @@ int gesture_line(const panel_gesture *g);
 typedef struct panel {
     const char *name;
 
-    // The number of rows in a stack in `body`, 0 if it has nothing to show or there is no
-    // room. Stacked panels only.
+    // The number of rows it takes of `body`, 0 if it has nothing to show or there is no
+    // room. Panels of the strip, and the one below the side's.
     int (*rows)(const explorer_model *model, const explorer_view *view, screen_size body);
 
     // Draws it into an area of the screen; pages are centred in the area of all panels.
@@ -296,10 +295,10 @@ bool draw_pane_view(const explorer_model *model, const explorer_view *view, scre
                     const pane *p, area a, value_range *axis);
 
 // --- lanes -----------------------------------------------------------------------------
-// The lanes below the curves, on the same time axis: the modes of the law, contact of the
-// other runs. Above them, if the curves show only a part of the run, a map of the whole.
+// Below the curves, on the same time axis: the modes of the law. Above them, if the
+// curves show only a part of the run, a map of the whole.
 
-// The number of rows of the lanes below curves of a given height.
+// The number of rows of these below curves of a given height.
 int lanes_rows(const explorer_model *model, const explorer_view *view, int height);
 
 // Draws the lanes in the number of rows given by lanes_rows; the area has the same

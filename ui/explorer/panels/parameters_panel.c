@@ -178,35 +178,12 @@ static void draw_parameter(const explorer_model *model, const explorer_view *vie
     screen_text(s, a.x + value_at, a.y, length, k.knob, shown);
 }
 
-// How many parameters there are in the group that begins with one.
-static int group_size(int first)
-{
-    int end = first;
-    while (end < parameter_count && parameter_group(end) == first) {
-        end++;
-    }
-    return end - first;
-}
-
-// The heading of a group: its name, and how many parameters are folded away.
-static void draw_heading(const explorer_view *view, layout *lay, screen *s, area a,
-                         int first)
+// The heading of a group: its name.
+static void draw_heading(screen *s, area a, int first)
 {
     char name[PARAMETER_NAME];
-    layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, first, a});
-    if (shows_knobs(view)) {
-        area_print(s, a, INK_EVENT, "\u25b8 all %d", parameter_count);
-        return;
-    }
-    const bool filtered = view->filters.text[PANEL_PARAMETERS][0] != '\0';
-    const bool folded = view->parameters.folded[first] && !filtered;
     parameter_group_name(first, name, sizeof name);
-    if (folded) {
-        const int used = area_print(s, a, INK_EVENT, "\u25b8 %s", name);
-        area_print(s, area_right(a, used + 1), INK_FRAME, "%d", group_size(first));
-    } else {
-        area_print(s, a, INK_EVENT, "\u25be %s", name);
-    }
+    area_text(s, a, INK_EVENT, name);
 }
 
 // The line below the selected parameter: its slider between the ends of its range, or the
@@ -249,7 +226,7 @@ static bool selected_line_expands(const explorer_model *model, const explorer_vi
                                   parameter_line line, bool has_slider)
 {
     const int chosen = view->parameters.parameter;
-    if (line.heading || line.parameter != chosen) {
+    if (line.heading) {
         return false;
     }
     return has_slider || model_inert_reason(model, chosen) != NULL;
@@ -290,7 +267,7 @@ static void draw_parameter_list(const explorer_model *model, const explorer_view
         }
         const area line = area_row(inside, row);
         if (lines[i].heading) {
-            draw_heading(view, lay, s, line, lines[i].parameter);
+            draw_heading(s, line, lines[i].parameter);
         } else {
             draw_parameter(model, view, lay, s, line, &p, lines[i].parameter);
         }
@@ -317,7 +294,7 @@ static void point_at_slider(explorer_model *model, explorer_view *view,
         share = (double)(g->event.x - h->area.x) / (cells - 1);
     }
     if (wheel != 0) {
-        parameter_list_select(&view->parameters, (parameter_line){h->index, false});
+        view->parameters.parameter = h->index;
         const char *direction = wheel < 0 ? "" : "-1"; // as the command takes it
         act_nudge(model, view, input, direction);
     } else if (g->event.kind == POINTER_RELEASE) {
@@ -327,8 +304,7 @@ static void point_at_slider(explorer_model *model, explorer_view *view,
     }
 }
 
-// A press folds the group of a heading and selects any other line; a slider takes the
-// mouse in its own way.
+// A press selects a line; a slider takes the mouse in its own way.
 static bool point_at_parameters(explorer_model *model, explorer_view *view,
                                 explorer_input *input, const panel_gesture *g)
 {
@@ -339,11 +315,7 @@ static bool point_at_parameters(explorer_model *model, explorer_view *view,
     if (g->event.kind != POINTER_PRESS) {
         return false;
     }
-    if (g->hit.part == PART_HEADING) {
-        parameter_list_fold(&view->parameters, g->hit.index);
-    } else {
-        parameter_list_select(&view->parameters, (parameter_line){g->hit.index, false});
-    }
+    view->parameters.parameter = g->hit.index;
     return true;
 }
 

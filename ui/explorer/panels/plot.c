@@ -409,16 +409,20 @@ static bool touches_between(const trace *t, double from, double to)
     return false;
 }
 
-void draw_contact(const explorer_model *model, const explorer_view *view, screen *s,
-                  area line, const trace *t, double until, ink shade)
+// Contact of the present run as a bar on the line of the time axis, as far as it was
+// seen.
+static void draw_contact(const explorer_model *model, const explorer_view *view,
+                         screen *s, area line)
 {
+    const trace *t = &model->session.run.trace;
+    const double until = model->session.seen;
     double from, to;
     view_window(model, view, &from, &to);
     for (int i = 0; i < line.width; i++) {
         const double begin = from + (to - from) * i / line.width;
         const double end = fmin(begin + (to - from) / line.width, until);
         if (begin <= until && touches_between(t, begin, end)) {
-            screen_put(s, line.x + i, line.y, GLYPH_SHADE, shade);
+            screen_put(s, line.x + i, line.y, GLYPH_SHADE, INK_FORCE);
         }
     }
 
@@ -426,7 +430,7 @@ void draw_contact(const explorer_model *model, const explorer_view *view, screen
     for (size_t i = 0; i < t->event_count && t->events[i].time <= until; i++) {
         if (t->events[i].kind == EVENT_CONTACT) {
             const int x = time_column(model, view, line, t->events[i].time);
-            screen_put(s, x, line.y, GLYPH_SHADE, shade);
+            screen_put(s, x, line.y, GLYPH_SHADE, INK_FORCE);
         }
     }
 }
@@ -527,7 +531,7 @@ area draw_time_axis(const explorer_model *model, const explorer_view *view, scre
     for (int x = line.x; x < line.x + line.width; x++) {
         screen_put(s, x, line.y, GLYPH_LINE, INK_FRAME);
     }
-    draw_contact(model, view, s, line, t, e->seen, INK_FORCE);
+    draw_contact(model, view, s, line);
     if (a.height > 1) {
         draw_instants(s, line, from, to);
     }

@@ -51,10 +51,6 @@ bool plot_frame_arrow(const plot_frame *f, screen *s, double time, const char *t
 // An axis of values in its column, its line at the right; the area's rows are the axis.
 void draw_value_axis(screen *s, area a, value_range axis);
 
-// Contact of a run as a bar on a line of the time axis, up to the instant `until` [s].
-void draw_contact(const explorer_model *model, const explorer_view *view, screen *s,
-                  area line, const trace *t, double until, ink shade);
-
 // The time axis below the curves in one or two rows: contact as a bar, impacts and
 // changes as marks with labels, seconds. Returns the area of its line and numbers.
 area draw_time_axis(const explorer_model *model, const explorer_view *view, screen *s,

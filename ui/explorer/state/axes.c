@@ -143,35 +143,6 @@ static void update_extremes(extremes *e, const shown_run *run, int signal)
 
 // --- axes of values --------------------------------------------------------------------
 
-// The range of some rows without the share that sticks out at either end, so that a spike
-// does not flatten all else; of many rows some, evenly spread.
-static value_range calm_range(const trace *t, int signal, size_t first, size_t last)
-{
-    enum { ROWS = 4096, STICKS_OUT = 50 }; // one in so many
-    static double values[ROWS];
-
-    // the finite values of those rows, in order
-    const size_t end = last < t->row_count ? last + 1 : t->row_count;
-    const size_t stride = (end - first) / ROWS + 1;
-    size_t count = 0;
-    for (size_t r = first; r < end; r += stride) {
-        values[count] = signal_value(&t->rows[r], signal);
-        if (isfinite(values[count])) {
-            count++;
-        }
-    }
-    if (count == 0) {
-        return value_range_empty;
-    }
-    qsort(values, count, sizeof *values, compare_numbers);
-
-    // without those that stick out, and with a margin
-    const double low = values[count / STICKS_OUT];
-    const double high = values[count - 1 - count / STICKS_OUT];
-    const double margin = 0.05 * (high - low);
-    return (value_range){low - margin, high + margin};
-}
-
 // Whether a signal of a pane counts for its range. Beside the force readings do not: they
 // answer an impulse with a spike that would flatten all else. Of measured data all do.
 static bool signal_counts(const pane *p, int k, const shown_run *run)
@@ -197,25 +168,18 @@ static value_range range_in_run(const pane *p, const extremes *e, const shown_ru
         if (!signal_counts(p, k, run)) {
             continue;
         }
-        if (p->scaling == AXIS_CALM) {
-            value_range_widen(&found, calm_range(t, signal, first, last));
-        } else {
-            const double *pairs = extremes_pairs(e, run, signal);
-            value_range_widen(&found, range_of_rows(t, signal, pairs, first, last));
-        }
+        const double *pairs = extremes_pairs(e, run, signal);
+        value_range_widen(&found, range_of_rows(t, signal, pairs, first, last));
     }
     return found;
 }
 
-// The same in the first of the runs shown or in all.
+// The same in all of the runs shown.
 static value_range range_between(const explorer_model *model, const pane *p, double from,
-                                 double to, bool first_only)
+                                 double to)
 {
     shown_run runs[SHOWN_RUNS];
-    int count = model_runs(model, p, runs);
-    if (first_only) {
-        count = 1;
-    }
+    const int count = model_runs(model, p, runs);
     value_range found = value_range_empty;
     for (int i = 0; i < count; i++) {
         value_range_widen(&found,
@@ -248,7 +212,7 @@ bool view_pane_axis(const explorer_model *model, const explorer_view *view, int 
     // the range of what is visible, and of what the law is to hold
     double from, to;
     view_window(model, view, &from, &to);
-    value_range seen = range_between(model, p, from, to, false);
+    value_range seen = range_between(model, p, from, to);
     if (!(seen.high >= seen.low)) {
         return false;
     }
@@ -256,14 +220,8 @@ bool view_pane_axis(const explorer_model *model, const explorer_view *view, int 
         value_range_widen(&seen, view_force_band(model));
     }
 
-    // it counts unless the axis is fixed or grows
-    if (p->scaling == AXIS_FIXED) {
-        *axis = p->fixed;
-    } else if (p->scaling == AXIS_GROW && p->grown.high >= p->grown.low) {
-        *axis = value_range_opened(p->grown);
-    } else {
-        *axis = value_range_opened(seen);
-    }
+    // it counts unless the axis is fixed
+    *axis = p->is_fixed ? p->fixed : value_range_opened(seen);
     return true;
 }
 
@@ -279,15 +237,6 @@ void state_update_axes(explorer_model *model, explorer_view *view)
                 update_extremes(&model->extremes[run], &runs[run],
                                 shown_signal(&runs[run], p, k));
             }
-        }
-    }
-
-    // what has been seen, into the axes that grow
-    for (int i = 0; i < PANES; i++) {
-        pane *p = &view->panes.pane[i];
-        if (p->scaling == AXIS_GROW && p->shown && pane_is_over_time(p)) {
-            value_range_widen(&p->grown, range_between(model, p, 0, model->session.seen,
-                                                       p->view == VIEW_TIME));
         }
     }
     follow_cursor(model, view);

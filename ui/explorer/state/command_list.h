@@ -43,8 +43,6 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "selected parameter a little up or down")                                          \
     X("", "select", act_select(model, view, argument), "Down j Up:-1 k:-1", "[-1]",      \
       "next or previous parameter")                                                      \
-    X("", "fold", act_fold(view, input, argument), "", "[GROUP|all|none]",               \
-      "fold a group of parameters, or show it")                                          \
     X("", "push", act_push(model, input, argument), "p:0.01 P:-0.01", "[N s]",           \
       "an impulse at the tip, 0.01 N s")                                                 \
     X("", "law", act_law(model, input, argument), "C", "[NAME|off]",                     \
@@ -125,8 +123,8 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
     X("", "focus", act_focus(view, input), "w", "", "next pane, for the keys of axes")   \
     X("", "alone", act_alone(view), "e", "", "that pane as large as all, or all again")  \
     X("", "axis", act_axis(model, view, input, argument),                                \
-      "a:next v:in V:out S-Up:up S-Down:down", "auto|grow|calm|LOW HIGH [PANE]",         \
-      "range: visible, seen, without spikes, yours")                                     \
+      "a:next v:in V:out S-Up:up S-Down:down", "auto|fixed|LOW HIGH [PANE]",             \
+      "range of values: what is visible, or yours")                                      \
     X("", "trace", act_trace(model, view, input, argument),                              \
       "1:1 2:2 3:3 4:4 5:5 6:6 7:7 8:8 9:9", "1-9|SIGNAL...|EXPRESSION",                 \
       "show or hide a pane of curves: trace force - force_reading")                      \
@@ -134,8 +132,6 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "hide a signal of the pane in focus, or show it; alone: the next")                 \
     X("", "limit", act_limit(model, input, argument), "", "SIGNAL VALUE|off",            \
       "a bound drawn across the panes of a signal")                                      \
-    X("", "band", act_band(model, input, argument), "", "SIGNAL TOLERANCE|off",          \
-      "a band round the baseline's curve, and who leaves it")                            \
     X("", "phase", act_show_pane(model, view, input, argument, VIEW_PHASE), "",          \
       "SIGNAL SIGNAL", "a pane of one signal over another: phase gap force")             \
     X("", "residual", act_show_pane(model, view, input, argument, VIEW_RESIDUAL), "",    \
@@ -145,9 +141,7 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
     X("", "statistics", act_statistics(view), "X", "",                                   \
       "min, max, mean, rms, integral from mark to cursor")                               \
     X("Scenarios", "open", act_open(model, view, input, argument), "o ]:+1 [:-1",        \
-      "[NAME|+1|-1]", "another scenario, from a list")                                   \
-    X("", "find", act_find(model, view, argument), "", "[TEXT]",                         \
-      "the list, filtered by what is typed")                                             \
+      "[NAME|+1|-1]", "another scenario, from a list that words narrow")                 \
     X("", "allow", act_allow(model, view, input), "", "",                                \
       "let the scenario run its program or plug-in")                                     \
     X("Lessons", "lesson", act_lesson(model, view, input, argument), "", "[NAME|off]",   \

@@ -222,6 +222,19 @@ static int compare_entries(const void *a, const void *b)
     return one->index - other->index;
 }
 
+// Whether a palette of a scope lists a kind.
+static bool is_in_scope(palette_scope scope, palette_kind kind)
+{
+    switch (scope) {
+    case SCOPE_SCENARIOS:
+        return kind == PALETTE_SCENARIO || kind == PALETTE_LESSON || kind == PALETTE_FILE;
+    case SCOPE_LESSONS:
+        return kind == PALETTE_LESSON;
+    default:
+        return true;
+    }
+}
+
 // Whether there is an entry: the table of its kind may have others in between.
 static bool has_entry(const explorer_model *model, const explorer_view *view,
                       palette_entry entry)
@@ -263,6 +276,9 @@ int palette_find(const explorer_model *model, const explorer_view *view,
                                        explorer_command_count};
     int count = 0;
     for (int kind = 0; kind < PALETTE_KINDS; kind++) {
+        if (!is_in_scope(view->palette.scope, (palette_kind)kind)) {
+            continue;
+        }
         for (int i = 0; i < counts[kind] && count < PALETTE_ENTRIES; i++) {
             palette_entry entry = {(palette_kind)kind, i, 0};
             if (!has_entry(model, view, entry)) {

@@ -28,11 +28,6 @@ static const char *const controlled_panes[PANES_OF_TABLE][PANE_SIGNALS] = {
     {"motor_torque", "friction_torque"},
 };
 
-const char *const axis_scaling_words[AXIS_SCALINGS] = {[AXIS_AUTO] = "auto",
-                                                       [AXIS_GROW] = "grow",
-                                                       [AXIS_FIXED] = "fixed",
-                                                       [AXIS_CALM] = "calm"};
-
 const value_range value_range_empty = {(double)INFINITY, (double)-INFINITY};
 
 value_range value_range_opened(value_range r)
@@ -62,7 +57,6 @@ static void show_signal(pane_set *set, int signal)
     pane *own = &set->pane[PANES_OF_TABLE];
     if (own->count < PANE_SIGNALS) {
         own->signals[own->count++] = signal;
-        own->grown = value_range_empty;
         own->shown = true;
     }
 }
@@ -158,9 +152,6 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
             set->pane[i].hidden = 0;
         }
     }
-    for (int i = 0; i < PANES; i++) {
-        set->pane[i].grown = value_range_empty;
-    }
     if (!set->chosen) {
         show_panes(set, wishes);
     }
@@ -225,7 +216,6 @@ int panes_add(pane_set *set, const pane *own)
     const int index = place_of_own(set);
     set->pane[index] = *own;
     set->pane[index].shown = true;
-    set->pane[index].grown = value_range_empty;
     set->chosen = true;
     set->focus = index;
     return index;
@@ -236,7 +226,7 @@ void pane_fix_axis(pane *p, value_range limits)
     const double size = fmax(fabs(limits.low), fabs(limits.high));
     const double height = limits.high - limits.low;
     if (isfinite(size) && height >= 1e-9 * size + 1e-15 && height < 1e15) {
-        p->scaling = AXIS_FIXED;
+        p->is_fixed = true;
         p->fixed = limits;
     }
 }

@@ -10,18 +10,6 @@
 // The panes of the table, and those that users define.
 enum { PANES_OF_TABLE = 9, PANES = 24, PANE_SIGNALS = 4 };
 
-// The range of a pane's axis of values.
-typedef enum axis_scaling {
-    AXIS_AUTO,  // the values in the visible part of the run
-    AXIS_GROW,  // all values shown so far; never shrinks
-    AXIS_FIXED, // set by the user
-    AXIS_CALM,  // like auto, but without the few values that stick out
-    AXIS_SCALINGS
-} axis_scaling;
-
-// The words for them in commands and settings.
-extern const char *const axis_scaling_words[AXIS_SCALINGS];
-
 // A range of values; empty if low is above high.
 typedef struct value_range {
     double low, high;
@@ -61,9 +49,9 @@ typedef struct pane {
     unsigned hidden;           // bit k: signals[k] is only in the legend
     bool shown;
     pane_view view;
-    axis_scaling scaling;
-    value_range fixed; // the range of a fixed axis
-    value_range grown; // the range of a growing axis
+    bool is_fixed;     // the axis of values has a range that the user set, else that of
+                       // the values in the visible part of the run
+    value_range fixed; // that range
 } pane;
 
 typedef struct pane_set {
@@ -115,13 +103,6 @@ typedef struct time_window {
     double from, to; // [s]; to <= from: the whole run
     bool adrift;     // it was shifted by the user and does not follow the cursor
 } time_window;
-
-// A box that is being drawn over a pane of curves, to see what is in it.
-typedef struct zoom_box {
-    bool held;
-    int pane;
-    int x0, y0, x1, y1; // cells
-} zoom_box;
 
 // --- extremes --------------------------------------------------------------------------
 // Smallest and largest values of blocks of rows, so that long runs can be drawn and their

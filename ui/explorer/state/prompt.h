@@ -49,10 +49,14 @@ bool text_type(char *text, int key);
 
 // --- the palette -----------------------------------------------------------------------
 
+// What the palette lists: all there is, or what can be opened.
+typedef enum palette_scope { SCOPE_ALL, SCOPE_SCENARIOS, SCOPE_LESSONS } palette_scope;
+
 // Which entry of the palette is selected.
 typedef struct palette_view {
     int selected; // -1: none, and Enter executes the line as typed
     bool picked;  // the selected entry was chosen with the mouse
+    palette_scope scope;
 } palette_view;
 
 // Whether an open prompt shows the palette: it searches, or its first word is being

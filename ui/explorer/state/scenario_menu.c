@@ -17,7 +17,6 @@ void scenario_menu_read(scenario_menu *menu)
     if (code != STATUS_OK) {
         menu->count = 0;
     }
-    menu->shown = g_new0(int, menu->count + 1);
 }
 
 // Whether two neighbours are lessons in the wrong order, which is that of the numbers in
@@ -59,8 +58,8 @@ void scenario_menu_read_titles(scenario_menu *menu)
         fault f = {0};
         const status code = scenario_open(&s, menu->names[i], keep_first_fault, &f);
         if (code == STATUS_OK) {
-            menu->texts[i] = (menu_text){s.title, s.description, s.lesson.step_count > 0};
-            s.title = s.description = NULL;
+            menu->texts[i] = (menu_text){s.title, s.lesson.step_count > 0};
+            s.title = NULL;
             scenario_finish(&s);
         }
         loss_unless(code != STATUS_NO_MEMORY);
@@ -74,12 +73,10 @@ void scenario_menu_finish(scenario_menu *menu)
         free(menu->names[i]);
         if (menu->texts != NULL) {
             free(menu->texts[i].title);
-            free(menu->texts[i].description);
         }
     }
     g_free(menu->texts);
     free(menu->names);
-    g_free(menu->shown);
     *menu = (scenario_menu){0};
 }
 
@@ -103,50 +100,7 @@ menu_text scenario_menu_text(const scenario_menu *menu, int index)
     if (text.title == NULL) {
         text.title = "";
     }
-    if (text.description == NULL) {
-        text.description = "";
-    }
     return text;
-}
-
-int scenario_menu_lines(const scenario_menu *menu, int *selected)
-{
-    int count = 0;
-    *selected = -1;
-    for (int i = 0; i < menu->count; i++) {
-        char text[1024];
-        snprintf(text, sizeof text, "%s %s", menu->names[i],
-                 scenario_menu_text(menu, i).title);
-        if (filter_passes(menu->filter, text)) {
-            if (i == menu->selected) {
-                *selected = count;
-            }
-            menu->shown[count++] = i;
-        }
-    }
-    return count;
-}
-
-void scenario_menu_move(scenario_menu *menu, int lines)
-{
-    int at;
-    const int count = scenario_menu_lines(menu, &at);
-    if (count == 0) {
-        menu->selected = 0;
-        return;
-    }
-
-    // from the selected line if the filter lets it pass, within the list
-    int to = 0;
-    if (at >= 0) {
-        to = at + lines;
-    }
-    if (to > count - 1) {
-        to = count - 1;
-    } else if (to < 0) {
-        to = 0;
-    }
-    menu->selected = menu->shown[to];
 }
 
 // --- lessons ---------------------------------------------------------------------------

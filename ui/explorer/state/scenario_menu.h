@@ -1,5 +1,4 @@
-// The list of scenarios: names, titles, filter and selection. And the progress in a
-// lesson.
+// The list of scenarios: names and titles. And the progress in a lesson.
 #pragma once
 
 #include <stdbool.h>
@@ -9,7 +8,7 @@
 
 // What a scenario says of itself.
 typedef struct menu_text {
-    char *title, *description; // NULL if it has none or could not be read
+    char *title; // NULL if it has none or could not be read
     bool is_lesson;
 } menu_text;
 
@@ -17,15 +16,11 @@ typedef struct scenario_menu {
     char **names;     // of all scenarios
     menu_text *texts; // of each; NULL before they are read
     int count;
-    int *shown; // indices of those that are in a line
-    char filter[LINE_TEXT];
-    bool filtering; // the filter receives the keys
-    int selected;   // index
 } scenario_menu;
 
 // Reads the names; the list stays empty if that fails.
 void scenario_menu_read(scenario_menu *menu);
-// Reads titles and descriptions, once.
+// Reads their titles, once.
 void scenario_menu_read_titles(scenario_menu *menu);
 void scenario_menu_finish(scenario_menu *menu);
 
@@ -33,14 +28,6 @@ void scenario_menu_finish(scenario_menu *menu);
 int scenario_menu_find(const scenario_menu *menu, const char *name);
 // What a scenario says of itself, "" where it has nothing or nothing was read.
 menu_text scenario_menu_text(const scenario_menu *menu, int index);
-// Finds the scenarios that pass the filter by their names or titles: menu->shown. Returns
-// how many;
-// *selected is the line of the selected one, -1 if it is hidden.
-int scenario_menu_lines(const scenario_menu *menu, int *selected);
-
-// Moves the selection by some of the lines shown, as far as there are any; a hidden one
-// first to the first line.
-void scenario_menu_move(scenario_menu *menu, int lines);
 
 // --- lessons ---------------------------------------------------------------------------
 

@@ -1,12 +1,10 @@
 #include "ui/explorer/state/shown_parameters.h"
 
 #include <assert.h>
-#include <fnmatch.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-#include "src/scenario/effect.h"
 #include "ui/explorer/state/view.h"
 
 // Whether a parameter begins another group than the one before it.
@@ -32,46 +30,12 @@ void parameter_group_name(int parameter, char *name, size_t size)
     text_cut(parameter_table[parameter].path, ".", name, size);
 }
 
-// Whether a path matches one of some patterns with blanks between them.
-static bool is_among(const char *path, const char *patterns)
-{
-    while (*patterns != '\0') {
-        char pattern[PARAMETER_NAME];
-        patterns = text_cut(patterns, " ", pattern, sizeof pattern);
-        if (fnmatch(pattern, path, 0) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-void parameter_list_arrange(parameter_list *list, const scenario *s, int selected)
-{
-    assert(selected >= 0 && selected < parameter_count);
-
-    // groups without effect are folded, and those of sensors and nominal models without a
-    // value set
-    bool shown[PARAMETER_LINES] = {false}, given[PARAMETER_LINES] = {false};
-    for (int i = 0; i < parameter_count; i++) {
-        const int group = parameter_group(i);
-        const bool is_long = is_among(parameter_table[i].path, "sensor.* belief.*");
-        shown[group] = shown[group] || effect_none(s, i) == NULL;
-        given[group] = given[group] || !is_long || s->parameters.set[i] != 0;
-        list->folded[group] = !shown[group] || !given[group];
-    }
-
-    // the selected one must still be visible
-    list->parameter = selected;
-    list->on_heading = false;
-    list->folded[parameter_group(selected)] = false;
-}
-
 bool parameter_list_is_brief(const parameter_list *list, const char *filter)
 {
     return !list->all && filter[0] == '\0';
 }
 
-// The knobs, the selected parameter if it is none of them, and the heading of all.
+// The knobs, and the selected parameter if it is none of them.
 static int knob_lines(const parameter_list *list, parameter_line lines[PARAMETER_LINES],
                       int *selected)
 {
@@ -83,14 +47,10 @@ static int knob_lines(const parameter_list *list, parameter_line lines[PARAMETER
         }
         lines[count++] = (parameter_line){list->knobs[i], false};
     }
-    if (*selected < 0 && !list->on_heading) {
+    if (*selected < 0) {
         *selected = count;
         lines[count++] = (parameter_line){list->parameter, false};
     }
-    if (list->on_heading) {
-        *selected = count;
-    }
-    lines[count++] = (parameter_line){0, true};
     return count;
 }
 
@@ -119,37 +79,12 @@ int parameter_list_lines(const parameter_list *list, const char *filter,
             }
             lines[count++] = (parameter_line){group, true};
         }
-        if (filter[0] != '\0' || !list->folded[group]) {
-            if (i == list->parameter && !list->on_heading) {
-                *selected = count;
-            }
-            lines[count++] = (parameter_line){i, false};
+        if (i == list->parameter) {
+            *selected = count;
         }
+        lines[count++] = (parameter_line){i, false};
     }
     return count;
-}
-
-void parameter_list_select(parameter_list *list, parameter_line line)
-{
-    assert(line.parameter >= 0 && line.parameter < parameter_count);
-    list->parameter = line.parameter;
-    list->on_heading = line.heading;
-    if (!line.heading) {
-        list->folded[parameter_group(line.parameter)] = false;
-    }
-}
-
-void parameter_list_fold(parameter_list *list, int parameter)
-{
-    assert(parameter >= 0 && parameter < parameter_count);
-    list->parameter = parameter_group(parameter);
-    list->on_heading = true;
-
-    // below the knobs the heading of all shows all, folded as they are
-    if (list->all) {
-        list->folded[list->parameter] = !list->folded[list->parameter];
-    }
-    list->all = true;
 }
 
 int parameter_of_name(const char *name)

@@ -1,5 +1,4 @@
-// The displayed list of parameters, in groups that can be folded, and filtered; their
-// sliders; which of them have no effect.
+// The displayed list of parameters, in groups, and filtered; their sliders.
 #pragma once
 
 #include <stdbool.h>
@@ -12,13 +11,10 @@ typedef struct parameter_list {
     bool all;              // all groups are shown, and not the knobs alone
     int knobs[MOST_KNOBS]; // the few parameters that the run is about
     int knob_count;
-    bool folded[PARAMETER_LINES]; // by group
-    int parameter;                // selected, index in parameter_table
-    bool on_heading; // the heading of its group is selected instead, or that of all
+    int parameter; // selected, index in parameter_table
 } parameter_list;
 
-// A line: a parameter, or the heading of the group whose first parameter it is; below the
-// knobs the heading of all, which the first parameter stands for.
+// A line: a parameter, or the heading of the group whose first parameter it is.
 typedef struct parameter_line {
     int parameter;
     bool heading;
@@ -29,24 +25,14 @@ typedef struct parameter_line {
 int parameter_group(int parameter);
 void parameter_group_name(int parameter, char *name, size_t size);
 
-// Folds the groups that have no effect on a run of these parameters, and those of sensors
-// and nominal models if none of their values was set; selects a parameter.
-void parameter_list_arrange(parameter_list *list, const scenario *s, int selected);
-
 // Whether the knobs are shown and not all parameters: as long as nothing is filtered.
 bool parameter_list_is_brief(const parameter_list *list, const char *filter);
 
 // Fills the lines that are shown and returns how many: the knobs with the selected
-// parameter, or all groups. With a filter, matching parameters are shown even in folded
-// groups. *selected is the index of the selected line, else of
-// its group's heading, else 0.
+// parameter, or those of all groups that pass a filter. *selected is the index of the
+// selected parameter's line, else of its group's heading, else 0.
 int parameter_list_lines(const parameter_list *list, const char *filter,
                          parameter_line lines[PARAMETER_LINES], int *selected);
-
-// Selects a line.
-void parameter_list_select(parameter_list *list, parameter_line line);
-// Folds or unfolds the group of a parameter and selects its heading, among all.
-void parameter_list_fold(parameter_list *list, int parameter);
 
 // The parameter of a path, of its last part or of a beginning of either, if only one has
 // it; -1 if none has, -2 if several have.

@@ -144,15 +144,6 @@ size_t model_row(const explorer_model *model, const trace *t)
     return trace_row_on_side(t, s->now, trace_side(&s->run.trace, s->row));
 }
 
-const char *model_run_name(const explorer_model *model, int index)
-{
-    const shown_run r = model_run(model, index);
-    if (r.kind == SHOWN_PINNED) {
-        return model->pinned.runs[r.index].name;
-    }
-    return r.kind == SHOWN_OPENED ? AS_OPENED : "";
-}
-
 // --- the run for comparison ------------------------------------------------------------
 
 // Finds out whether a pinned run is the one as opened, where runs were pinned or dropped

@@ -30,17 +30,14 @@ static void define_panes(const explorer_model *model, explorer_view *view)
     panes_define(&view->panes, &wishes);
 }
 
-// Begins the scenario's lesson, if it has one, with the parameters that matter to it.
+// Begins the scenario's lesson, if it has one, with the parameter that matters most to
+// it.
 static void begin_lesson(explorer_model *model, explorer_view *view)
 {
     const lesson *l = &model->session.base.lesson;
     model->lesson = (lesson_progress){.on = l->step_count > 0};
-    for (int i = 0; l->parameter_count > 0 && i < parameter_count; i++) {
-        view->parameters.folded[i] = true;
-    }
-    for (int i = l->parameter_count; i-- > 0;) {
-        parameter_list_select(&view->parameters,
-                              (parameter_line){l->parameters[i], false});
+    if (l->parameter_count > 0) {
+        view->parameters.parameter = l->parameters[0];
     }
 }
 
@@ -83,8 +80,7 @@ static void show_from_start(explorer_model *model, explorer_view *view)
     if (view->side.panel == PANEL_SWEEP) {
         view->side.panel = PANEL_PARAMETERS;
     }
-    parameter_list_arrange(&view->parameters, &model->session.effective,
-                           model_main_parameter(model));
+    view->parameters.parameter = model_main_parameter(model);
     view->mark.set = false;
     begin_lesson(model, view);
     model_choose_knobs(model, &view->parameters);
@@ -103,7 +99,7 @@ status state_init(explorer_model *model, explorer_view *view, scenario *s,
     TRY(session_open(&model->session, s, patience, f));
 
     model->visit_count = 1;
-    model->limit.signal = model->band.signal = -1;
+    model->limit.signal = -1;
     model->limit.quantity = -1;
     model->pinned.baseline = -1;
     model->sweep.metric = SUMMARY_INDEX(peak_force_N);

@@ -62,13 +62,10 @@ typedef struct side_view {
 
 // What the last picture decided, and the next one begins with.
 typedef struct drawn_view {
-    int scroll[PANEL_IDS];  // by panel: number of lines scrolled from its automatic
-                            // position
-    bool folded[PANEL_IDS]; // panels of the stack that had no room: Tab selects them
-    int page_lines;         // of the page, shown at once
-    int first_scenario; // line of their list shown first; negative: the selected one in
-                        // the middle
-    arm_stage stage;    // where the arm was drawn
+    int scroll[PANEL_IDS]; // by panel: number of lines scrolled from its automatic
+                           // position
+    int page_lines;        // of the page, shown at once
+    arm_stage stage;       // where the arm was drawn
 } drawn_view;
 
 // A scenario that was opened before the present one, or that undoing has left: as it was
@@ -95,7 +92,6 @@ typedef struct explorer_model {
     lab_sweep sweep;
     run_difference difference;
     solved_limit limit;
-    solved_limit band; // a tolerance on both sides of the baseline
     note notes[NOTES]; // in time
     int note_count;
     lesson_progress lesson;
@@ -139,7 +135,6 @@ typedef struct explorer_view {
 
     // panes and panels
     pane_set panes;
-    zoom_box box;
     int panes_height; // height of the screen for which they were filled [cells]
     side_view side;
     parameter_list parameters;
@@ -216,8 +211,6 @@ shown_run model_run(const explorer_model *model, int index);
 // The row of a run or a difference at the cursor, on the side of an event where that
 // stands.
 size_t model_row(const explorer_model *model, const trace *t);
-// The name of a run beside the present one, "" for those without a name.
-const char *model_run_name(const explorer_model *model, int index);
 // Whether runs stand beside the present one, so that a colour tells runs and not signals.
 bool model_shows_others(const explorer_model *model);
 // The place of a run among the looks of runs side by side (render/plot/run_style.h), from

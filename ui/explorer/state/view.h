@@ -16,13 +16,12 @@ typedef enum panel_place {
     PLACE_TOP,   // above the curves
     PLACE_MAIN,  // below that
     PLACE_SIDE,  // on the right; Tab selects one of these
-    PLACE_STACK, // below the selected one, as many as have room
+    PLACE_BELOW, // below the selected one, where that has room
     PLACE_PAGE,  // opens over the others
     PLACE_PROMPT // above the prompt while that is open
 } panel_place;
 
-// identity, place, description; side panels in the order in which Tab selects them,
-// stacked ones from top to bottom
+// identity, place, description; side panels in the order in which Tab selects them
 #define PANEL_LIST(X)                                                                    \
     X(PANEL_RESULTS, PLACE_STRIP, results_panel)                                         \
     X(PANEL_LESSON, PLACE_STRIP, lesson_panel)                                           \
@@ -32,10 +31,8 @@ typedef enum panel_place {
     X(PANEL_VALUES, PLACE_SIDE, values_panel)                                            \
     X(PANEL_STATISTICS, PLACE_SIDE, statistics_panel)                                    \
     X(PANEL_SWEEP, PLACE_SIDE, sweep_panel)                                              \
-    X(PANEL_CONTROLLER, PLACE_STACK, controller_panel)                                   \
-    X(PANEL_PREDICTORS, PLACE_STACK, predictors_panel)                                   \
+    X(PANEL_PREDICTORS, PLACE_BELOW, predictors_panel)                                   \
     X(PANEL_HELP, PLACE_PAGE, help_panel)                                                \
-    X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                      \
     X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)                                    \
     X(PANEL_CHANGES, PLACE_PAGE, changes_panel)                                          \
     X(PANEL_RUN_LIST, PLACE_PAGE, run_list_panel)                                        \
