@@ -35,7 +35,7 @@ typedef struct arm_observer {
     double stiffness, stiff_force, stiff_bend, stiff_nominal;
     // misfit of its predictions to the readings while the hub moved: -2 log likelihood of
     // the readings, each with its own noise and Student's tails; its difference from
-    // another model's misfit is the evidence for this one
+    // another model's misfit is the evidence for this one; infinite where nobody follows
     double missed;
     bool moves; // the hub moves at the present sample
 } arm_observer;

@@ -180,6 +180,8 @@ void observer_design_flight(const observer_design *d, sampled_model *model)
 #define NO_DOUBT 28
 // further difference for arms that bounces or a wrong inertia may look like
 #define HANDICAP 30
+// difference from which on an arm is followed no longer, 2 log(1e13)
+#define HOPELESS 60
 
 const observer_design *observer_arms_design(const observer_arms *a)
 {
@@ -271,7 +273,10 @@ void observer_arms_sample(observer_arms *a, const controller_input *in, int felt
     const controller_input read =
         hub_sensors_read(&a->sensors, in, a->arms[0].observer.period);
     for (int i = 0; i < a->count; i++) {
-        arm_observer_sample(&a->arms[i].observer, &a->sensors, &read, felt);
+        arm_observer *o = &a->arms[i].observer;
+        if (o->missed < HUGE_VAL) {
+            arm_observer_sample(o, &a->sensors, &read, felt);
+        }
     }
 }
 
@@ -297,18 +302,23 @@ bool observer_arms_choose(observer_arms *a)
     const int count = touches ? a->loaded : a->count;
 
     // another arm has to explain the readings better than the present one by NO_DOUBT
+    const double present = observer_arms_observer(a)->missed;
     int best = a->on;
-    double least = observer_arms_observer(a)->missed - NO_DOUBT;
+    double least = present - NO_DOUBT;
     for (int i = 0; i < count; i++) {
-        // walls that give and masses at the tip have to be better still
+        // one that explains them far worse is out of the question, and so is a wall that
+        // gives once the tip has left it
         const bool gives = i >= a->giving && i < a->loaded;
-        double missed = a->arms[i].observer.missed;
-        if (i >= a->giving) {
-            missed += HANDICAP;
+        double *missed = &a->arms[i].observer.missed;
+        if (*missed > present + HOPELESS || (gives && a->thrown && i != a->on)) {
+            *missed = HUGE_VAL;
         }
-        if (missed < least && !(gives && a->thrown)) {
+
+        // walls that give and masses at the tip have to be better still
+        const double handicap = i >= a->giving ? HANDICAP : 0;
+        if (*missed + handicap < least) {
             best = i;
-            least = missed;
+            least = *missed + handicap;
         }
     }
 
