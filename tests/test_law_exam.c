@@ -110,6 +110,23 @@ TEST(pushes_keep_the_actions_of_the_scenario)
     free(actions);
 }
 
+// A scenario that does not say how long it lasts gives its pushes the time that they
+// take.
+TEST(cases_last_until_their_push_is_over)
+{
+    scenario s = {.name = "default"};
+    parameters_defaults(&s.parameters, ARM_CORRECTED);
+    s.parameters.control.law = LAW_OBSERVER;
+    check_below(s.parameters.run.duration, DRAWN_CASE_DURATION);
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        const drawn_case c = drawn_case_of(&s, seed);
+        action room;
+        scenario derived;
+        DONE(drawn_case_scenario(&derived, &s, &c, true, &room, &f));
+        check_close(derived.parameters.run.duration, DRAWN_CASE_DURATION, 0);
+    }
+}
+
 // The exam's verdict on a case is that of a single run of the case. Forces are in percent
 // of the first force, 1 N. Where the case has a push, settling counts from the push (or
 // from the contact, if that is later), otherwise from the contact.

@@ -439,8 +439,6 @@ status drawn_case_scenario(scenario *derived, const scenario *base, const drawn_
                            bool pushed, action *actions, fault *f)
 {
     *derived = *base;
-    parameters *p = &derived->parameters;
-    p->run.duration = fmax(p->run.duration, DRAWN_CASE_DURATION);
     derived->actions = actions;
     derived->action_count = list_actions(base, c, pushed, actions);
 
@@ -456,5 +454,9 @@ status drawn_case_scenario(scenario *derived, const scenario *base, const drawn_
                              c->settings[i], base->name, why.text);
         }
     }
+
+    // behind the settings, which give all that the scenario does not set its default
+    double *duration = &derived->parameters.run.duration;
+    *duration = fmax(*duration, DRAWN_CASE_DURATION);
     return STATUS_OK;
 }
