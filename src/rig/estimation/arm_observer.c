@@ -25,7 +25,7 @@ _Static_assert((int)REDUCED_MODES <= (int)MODAL_MOST, "a model has room for all 
 // degrees of freedom of Student's distribution of the prediction errors
 #define TAILS        4.0
 #define STIFF_MEMORY 0.5  // over which readings count for the stiffness [s],
-#define STIFF_GUESS  0.15 // time of pressing that the nominal one counts as [s]
+#define STIFF_GUESS  0.15 // impulse of pressing that the nominal one counts as [N s]
 #define LEAST_STIFF  0.2  // least stiffness that is taken for true, over the nominal one
 #define OUTLIER      4.0  // standard deviations from which on a reading counts for less
 #define TIP_IMPULSE  0.03 // of the wall on the tip that no sensor sees [N s]
@@ -111,7 +111,7 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup,
     o->stiction = setup->stiction;
     o->period = setup->period;
     o->delay = fmin(setup->delay, setup->period);
-    o->stiff_nominal = STIFF_GUESS * force * force;
+    o->stiff_nominal = STIFF_GUESS * force;
     for (int k = 0; k < 2; k++) {
         double h = k == 0 ? o->delay : o->period - o->delay;
         sample_model(o, &o->arm.free, h, &o->free_model[k]);
@@ -403,9 +403,9 @@ static double take_force(arm_observer *o, const controller_input *in)
 //
 // where `nominal` is the first mode's force at the nominal stiffness, by the encoder, and
 // `read` the reading less the forces of the other modes and of the motion. The guess
-// draws the quotient towards 1 like pressing with the wanted force for a time
-// STIFF_GUESS, which is long enough for vibrations that the model does not show to
-// cancel.
+// draws the quotient towards 1 like pressing with the wanted force for an impulse
+// STIFF_GUESS: long enough for vibrations that the model does not show to cancel, and the
+// shorter the harder it presses, as noise and friction weigh less then.
 static void learn_stiffness(arm_observer *o, const controller_input *in,
                             double reading_weight)
 {

@@ -180,8 +180,8 @@ void observer_design_flight(const observer_design *d, sampled_model *model)
 #define NO_DOUBT 28
 // further difference for arms that bounces or a wrong inertia may look like
 #define HANDICAP 30
-// difference from which on an arm is followed no longer, 2 log(1e13)
-#define HOPELESS 60
+// difference from which on an arm is followed no longer, 2 log(1e54)
+#define HOPELESS 250
 
 const observer_design *observer_arms_design(const observer_arms *a)
 {

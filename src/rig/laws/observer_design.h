@@ -79,6 +79,6 @@ void observer_arms_leave(observer_arms *a, double time);
 
 // Goes over to the arm whose observer predicts the readings best, where they leave no
 // doubt: by a likelihood ratio of a million, since a wrong parameter causes many errors
-// in a row. An arm that predicts them worse by one of 10^13 is followed no longer.
+// in a row. An arm that predicts them worse by one of 10^54 is followed no longer.
 // Returns whether that is another arm than before.
 bool observer_arms_choose(observer_arms *a);
