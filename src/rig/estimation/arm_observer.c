@@ -15,8 +15,6 @@ _Static_assert((int)REDUCED_MODES <= (int)MODAL_MOST, "a model has room for all 
 // Standard deviations of the readings and of what the models leave out.
 #define FORCE_NOISE  0.02 // of the force sensor [N]
 #define FORCE_SHARE  0.02 // of the force sensor, as a share of the reading
-#define FILM_NOISE   0.01 // of the film [rad]
-#define FILM_LEAK    0.1  // with which the film loses its charge [rad/s]
 #define ACCELERATION 1.0  // of the accelerometer [rad/s2]
 #define TORQUE_DRIFT 0.1  // of the unknown torque, in a second, in flight [N m],
 #define TORQUE_STAYS 0.05 // and in contact, where a wall that yields looks like one [N m]
@@ -25,7 +23,7 @@ _Static_assert((int)REDUCED_MODES <= (int)MODAL_MOST, "a model has room for all 
 // degrees of freedom of Student's distribution of the prediction errors
 #define TAILS        4.0
 #define STIFF_MEMORY 0.5  // over which readings count for the stiffness [s],
-#define STIFF_GUESS  0.15 // impulse of pressing that the nominal one counts as [N s]
+#define STIFF_GUESS  0.15 // time of pressing with 1 N that the nominal one counts as [s]
 #define LEAST_STIFF  0.2  // least stiffness that is taken for true, over the nominal one
 #define OUTLIER      4.0  // standard deviations from which on a reading counts for less
 #define TIP_IMPULSE  0.03 // of the wall on the tip that no sensor sees [N s]
@@ -111,7 +109,7 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup,
     o->stiction = setup->stiction;
     o->period = setup->period;
     o->delay = fmin(setup->delay, setup->period);
-    o->stiff_nominal = STIFF_GUESS * force;
+    o->stiff_nominal = STIFF_GUESS / fmax(1, force) * force * force;
     for (int k = 0; k < 2; k++) {
         double h = k == 0 ? o->delay : o->period - o->delay;
         sample_model(o, &o->arm.free, h, &o->free_model[k]);
@@ -352,16 +350,15 @@ static void take_acceleration(arm_observer *o, const controller_input *in)
     take_reading(o, row, offset, in->accelerometer, ACCELERATION);
 }
 
-// Takes in the readings of the motion: of encoder and tachometer, and of film and
-// accelerometer where these are fitted.
+// Takes in the readings of the motion: of encoder and tachometer, and of an accelerometer
+// where one is fitted.
 static void take_motion(arm_observer *o, const hub_sensors *s, const controller_input *in)
 {
     const mode_set *set = modes_of(o);
     const int n = set->count;
-    double angle[N] = {0}, rate[N] = {0}, bending[N] = {0};
+    double angle[N] = {0}, rate[N] = {0};
     for (int i = 0; i < n; i++) {
         angle[i] = rate[n + i] = set->hub[i];
-        bending[i] = set->bending[i];
     }
 
     // in contact the modes are seen from the wall
@@ -370,11 +367,6 @@ static void take_motion(arm_observer *o, const hub_sensors *s, const controller_
     }
     take_reading(o, angle, 0, in->encoder, s->angle_deviation);
     take_reading(o, rate, 0, in->tachometer, sqrt(s->rate_variance));
-
-    if (!isnan(in->film)) {
-        const double leaked = FILM_LEAK * (in->time - o->since);
-        take_reading(o, bending, 0, in->film, FILM_NOISE + fmin(leaked, 1));
-    }
     if (!isnan(in->accelerometer)) {
         take_acceleration(o, in);
     }
@@ -403,9 +395,10 @@ static double take_force(arm_observer *o, const controller_input *in)
 //
 // where `nominal` is the first mode's force at the nominal stiffness, by the encoder, and
 // `read` the reading less the forces of the other modes and of the motion. The guess
-// draws the quotient towards 1 like pressing with the wanted force for an impulse
-// STIFF_GUESS: long enough for vibrations that the model does not show to cancel, and the
-// shorter the harder it presses, as noise and friction weigh less then.
+// draws the quotient towards 1 like pressing with the wanted force for a time
+// STIFF_GUESS, which is long enough for vibrations that the model does not show to
+// cancel; above 1 N, where noise and friction weigh less, for as much less as the force
+// is more.
 static void learn_stiffness(arm_observer *o, const controller_input *in,
                             double reading_weight)
 {

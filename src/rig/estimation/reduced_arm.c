@@ -79,7 +79,6 @@ static void take_modes(mode_set *set, const arm *a, const double *mass, double h
         set->damping[at] = per_stiffness * set->square[at];
         set->hub[at] = x[0];
         set->tip[at] = tip * scale;
-        set->bending[at] = x[n - 1] - x[a->first];
         set->momentum[at] = momentum * scale;
     }
 }

@@ -32,7 +32,6 @@ typedef struct mode_set {
     double damping[REDUCED_MODES]; // c [1/s]
     double hub[REDUCED_MODES];     // h: hub angle [1/sqrt(kg m2)]
     double tip[REDUCED_MODES]; // tip displacement over the arm's length [1/sqrt(kg m2)]
-    double bending[REDUCED_MODES];  // last link's angle minus the first's [1/sqrt(kg m2)]
     double momentum[REDUCED_MODES]; // p [sqrt(kg m2)]
 } mode_set;
 
