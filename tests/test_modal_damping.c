@@ -20,19 +20,18 @@ static held_modes held_modes_of(const parameters *p)
     return m;
 }
 
-// Joints that the arm does not have take no part; an arm may have as many as a list has
-// numbers.
+// Joints that the arm does not have take no part.
 TEST(only_joints_that_are_there_are_damped)
 {
     const char *const *const arms[] = {given("arm.links=5"),
                                        given("arm.links=32 arm.hub_joint=beam")};
     for (int j = 0; j < 2; j++) {
-        double rows[PARAMETER_MODES_MOST][PARAMETER_LIST_MOST];
+        double rows[PARAMETER_MODES_MOST][PARAMETER_MODAL_LINKS];
         arm a = arm_with(arms[j]);
         assert_int_equal(modal_damping_rows(&a, "0.1,0.2,0.3", rows), 3);
         for (int i = 0; i < 3; i++) {
             int damped = 0;
-            for (int k = 0; k < PARAMETER_LIST_MOST; k++) {
+            for (int k = 0; k < PARAMETER_MODAL_LINKS; k++) {
                 damped += rows[i][k] != 0;
             }
             assert_int_equal(damped, a.dof - 1);

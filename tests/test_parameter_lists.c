@@ -7,7 +7,7 @@
 
 static const char *set_list(parameters *p, const char *path, const char *text, fault *f)
 {
-    static char list[PARAMETER_TEXT_SIZE];
+    static char list[PARAMETER_VALUE_SIZE];
     parameters_defaults(p, ARM_CORRECTED);
     *f = (fault){0};
     parameter_set_text(p, parameter_index(path), text, f);
@@ -55,9 +55,11 @@ TEST(what_is_no_list_of_its_numbers_is_refused)
     check_refused("arm.joint_stiffness", "10 12", "expected N m/rad");
     check_refused("arm.link_lengths", "0.5,0", "0 is out of range");
     check_refused("arm.link_lengths", "[0.5", "'[0.5' is not a number");
-    check_refused("arm.link_lengths",
-                  "1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1",
-                  "at most 32 numbers");
+    static char many[2 * PARAMETER_LIST_MOST + 2] = "1";
+    for (int k = 0; k < PARAMETER_LIST_MOST; k++) {
+        strcat(many, ",1");
+    }
+    check_refused("arm.link_lengths", many, "at most 128 numbers and 1023 characters");
     check_refused("arm.modal_ratios", "0.1,-0.1", "-0.1 is out of range");
 }
 
@@ -176,7 +178,7 @@ TEST(a_beam_cut_into_unequal_links_converges)
     double off[2];
     for (int i = 0; i < 2; i++) {
         const int n = 10 << i;
-        char lengths[PARAMETER_TEXT_SIZE] = "arm.link_lengths=";
+        char lengths[PARAMETER_VALUE_SIZE] = "arm.link_lengths=";
         for (int k = 0; k < n; k++) { // coarse at the hub, fine at the tip
             const size_t used = strlen(lengths);
             snprintf(lengths + used, sizeof lengths - used, "%s%g", k > 0 ? "," : "",

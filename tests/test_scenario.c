@@ -364,7 +364,7 @@ TEST(an_action_that_cannot_be_changes_nothing)
 TEST(a_list_has_a_limit)
 {
     for (int over = -1; over < 2; over++) {
-        const int digits = PARAMETER_TEXT_SIZE - 1 - (int)strlen(", 7.5") + over;
+        const int digits = PARAMETER_VALUE_SIZE - 1 - (int)strlen(", 7.5") + over;
         const char *text =
             formatted("arm:\n  links: 3\n  joint_stiffness:\n  - 6.%0*d\n  - 7.5\n",
                       digits - 2, 0);

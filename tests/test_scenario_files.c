@@ -313,7 +313,7 @@ static void check_written(const scenario *s)
         assert_true(a->kind == ACTION_PUSH || a->parameter == b->parameter);
     }
     for (int i = 0; i < parameter_count; i++) {
-        char one[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
+        char one[PARAMETER_VALUE_SIZE], other[PARAMETER_VALUE_SIZE];
         parameter_format(&s->parameters, i, one, sizeof one);
         parameter_format(&back.parameters, i, other, sizeof other);
         assert_string_equal(one, other);

@@ -125,7 +125,7 @@ TEST(a_number_of_a_list_is_set_alone)
         SCOPED(sweep_axis_finish) sweep_axis axis = {0};
         fault f = {0};
         const char *name = formatted("arm.joint_stiffness[%d]", k);
-        char text[PARAMETER_TEXT_SIZE];
+        char text[PARAMETER_VALUE_SIZE];
         double found[PARAMETER_LIST_MOST];
         parameters_defaults(&p, ARM_CORRECTED);
         const int list = parameter_find("arm.joint_stiffness");

@@ -88,7 +88,7 @@ int trace_compare_panels(const trace_panel *panels, int panel_count,
 // Whether a parameter that some run was given has another value in another run.
 static bool differs(const comparison_figure *c, int parameter)
 {
-    char first[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
+    char first[PARAMETER_VALUE_SIZE], other[PARAMETER_VALUE_SIZE];
     bool given = false, alike = true;
     parameter_format(&c->of.runs[0].scenario->parameters, parameter, first, sizeof first);
     for (int i = 0; i < c->simulated; i++) {
@@ -144,7 +144,7 @@ static char *run_label(const comparison_figure *c, const trace_run *run)
     g_autofree char *escaped = text_escape(name);
     GString *out = g_string_new(escaped);
     for (int i = 0; i < count && count <= DIFFERENCES_KEYED; i++) {
-        char value[PARAMETER_TEXT_SIZE];
+        char value[PARAMETER_VALUE_SIZE];
         const parameter_info *info = &parameter_table[differ[i]];
         parameter_format(&run->scenario->parameters, differ[i], value, sizeof value);
         if (!name_says(name, info, value)) {

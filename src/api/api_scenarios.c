@@ -193,7 +193,7 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path,
 
     // the whole value, or none if there is no room for it
     const parameters *p = &handle->scenario.parameters;
-    char whole[PARAMETER_TEXT_SIZE] = "";
+    char whole[PARAMETER_VALUE_SIZE] = "";
     double value;
     if (settings_name(path) == NULL) {
         parameter_format(p, axis.parameter, whole, sizeof whole);

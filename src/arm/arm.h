@@ -21,7 +21,7 @@ typedef struct arm_link {
     double mass;      // [kg]
     double inertia;   // about the centre of mass [kg m2]
     double stiffness; // of the joint [N m/rad]
-    double damping;   // structural, of the joint [N m s/rad]
+    double damping;   // of the joint [N m s/rad]
 } arm_link;
 
 // How much there is of each force of force_list.h, by the name of its law.
@@ -62,7 +62,7 @@ typedef struct arm {
     // row i, g, gives the joints the torques g (g'(bend rates)); g[k] belongs to the
     // joint before link k
     double modal_damping[PARAMETER_MODES_MOST]
-                        [PARAMETER_LIST_MOST]; // [(N m s/rad)^(1/2)]
+                        [PARAMETER_MODAL_LINKS]; // [(N m s/rad)^(1/2)]
 } arm;
 
 // Whether the arm is equal bare links with equal linear joints, damped in proportion to

@@ -98,14 +98,14 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     // nothing but masses and springs, or dampers
     arm a = *source;
     a.motor.electric = false;
-    a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping =
-        a.hub_joint_damping = 0;
-    for (int k = 0; k < (int)PARAMETER_LIST_MOST; k++) {
-        a.each[k].damping = 0;
-    }
+    a.motor.torque = a.motor.damping = a.motor.stiction = 0;
     a.amount = (force_amounts){0};
     if (!of_velocities) {
         a.damped_modes = 0;
+        a.joint_damping = a.hub_joint_damping = 0;
+        for (int k = 0; k < (int)PARAMETER_LIST_MOST; k++) {
+            a.each[k].damping = 0;
+        }
     }
     a.wall.kind = WALL_NONE;
     chain_link work[LONGEST];
@@ -173,7 +173,9 @@ static double highest_frequency(const arm *a)
 // of an overdamped mode, of air drag, of damped modes, of the current and of the hub that
 // the motor brakes. The damping ratio z of a mode of frequency w grows with w, as damping
 // is proportional to stiffness; if z > 1, the mode decays at w (z + sqrt(z^2 - 1)).
-static double fastest_decay(const arm *a)
+// Joints that are damped `singly`, and modes, decay no faster than by the largest
+// eigenvalue of M^-1 C.
+static double fastest_decay(const arm *a, bool singly)
 {
     double w = a->highest_frequency,
            stiffest = fmax(a->joint_stiffness, a->hub_stiffness);
@@ -182,7 +184,7 @@ static double fastest_decay(const arm *a)
 
     // overdamped modes, and the least inertia that the hub can show
     double decay = 0, reach = 0;
-    if (ratio > 1) {
+    if (ratio > 1 && !singly) {
         decay = w * (ratio + sqrt(ratio * ratio - 1));
     }
     if (!a->hub_spring) {
@@ -193,7 +195,7 @@ static double fastest_decay(const arm *a)
 
     // drag and damped modes
     decay = fmax(decay, a->amount.air_drag * a->link_length / a->link_mass);
-    if (a->damped_modes > 0) {
+    if (a->damped_modes > 0 || singly) {
         decay = fmax(decay, 1.05 * largest_eigenvalue(a, true));
     }
 
@@ -209,23 +211,22 @@ static double fastest_decay(const arm *a)
     return fmax(decay, braking / hub);
 }
 
-// Sets links and joints one by one, if the parameters list lengths or stiffnesses. A list
-// of equal numbers gives an even chain.
+// Sets links and joints one by one, if the parameters list what they are. A list of equal
+// numbers gives an even chain.
 static void set_links(arm *a, const arm_parameters *p)
 {
-    double lengths[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST];
-    if (p->joint_stiffness[0] == '\0' && p->link_lengths[0] == '\0') {
+    double lengths[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST],
+        masses[PARAMETER_LIST_MOST], inertias[PARAMETER_LIST_MOST];
+    a->uneven = !parameters_even_links(p);
+    if (p->joint_stiffness[0] == '\0' && p->link_lengths[0] == '\0' && !a->uneven) {
         return;
     }
     parameters_link_lengths(p, lengths);
     parameters_joint_stiffness(p, stiffness);
-    a->uneven = !parameters_even_links(p);
-
-    // rods of one beam
-    const double density = p->mass / p->length;
+    parameters_link_masses(p, masses);
+    parameters_link_inertias(p, inertias);
     for (int k = 0; k < p->links; k++) {
-        const double l = lengths[k], mass = density * l;
-        a->each[k] = (arm_link){l, mass, mass * l * l / 12, stiffness[k], 0};
+        a->each[k] = (arm_link){lengths[k], masses[k], inertias[k], stiffness[k], 0};
     }
 
     // the stiffness of equal joints as the list has it; of different ones the largest,
@@ -235,6 +236,31 @@ static void set_links(arm *a, const arm_parameters *p)
     }
     for (int k = 1; k < a->links; k++) {
         a->joint_stiffness = fmax(a->joint_stiffness, stiffness[k]);
+    }
+}
+
+// Sets the damping that arm.joint_damping gives the joints, of the chain's joints the
+// largest.
+static void set_joint_damping(arm *a, const arm_parameters *p)
+{
+    double listed[PARAMETER_LIST_MOST], damping[PARAMETER_LIST_MOST];
+    const int count = parameter_list_numbers(p->joint_damping, listed);
+    if (count == 0 || (a->links == 1 && !a->hub_spring)) {
+        return;
+    }
+    a->joint_damping = listed[count - 1];
+    if (a->hub_spring) {
+        a->hub_joint_damping = listed[0];
+    }
+    if (!a->uneven) {
+        return;
+    }
+    parameters_joint_damping(p, damping);
+    for (int k = 0; k < a->links; k++) {
+        a->each[k].damping = damping[k];
+        if (k > 0) {
+            a->joint_damping = fmax(a->joint_damping, damping[k]);
+        }
     }
 }
 
@@ -294,11 +320,12 @@ void arm_init(arm *a, const parameters *p)
         }
     }
 
+    set_joint_damping(a, &p->arm);
     a->damped_modes = modal_damping_rows(a, p->arm.modal_ratios, a->modal_damping);
 
     // how fast it can be
     a->highest_frequency = highest_frequency(a);
-    a->fastest_decay = fastest_decay(a);
+    a->fastest_decay = fastest_decay(a, p->arm.joint_damping[0] != '\0');
     a->fastest_rate = fmax(a->highest_frequency, DECAY_WEIGHT * a->fastest_decay);
     if (a->motor.inductance > 0) { // the current is no decay to be passed over
         a->fastest_rate =

@@ -288,7 +288,7 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count,
 
 // --- damping of modes ------------------------------------------------------------------
 
-enum { MOST_BODIES = PARAMETER_LIST_MOST + 1 };
+enum { MOST_BODIES = PARAMETER_MODAL_LINKS + 1 };
 
 // Computes K^(-1/2) S K^(-1/2), of (dof - 1)^2 numbers, in the coordinates of the joints'
 // bends, while the first body is held. The angle of body i is the sum of the bends of
@@ -321,7 +321,7 @@ static void scaled_mass(const arm *a, double *scaled)
 }
 
 int modal_damping_rows(const arm *a, const char *ratios,
-                       double rows[][PARAMETER_LIST_MOST])
+                       double rows[][PARAMETER_MODAL_LINKS])
 {
     double ratio[PARAMETER_LIST_MOST], scaled[MOST_BODIES * MOST_BODIES];
     double values[MOST_BODIES], scratch[2 * MOST_BODIES];
@@ -333,7 +333,7 @@ int modal_damping_rows(const arm *a, const char *ratios,
     // the modes of K^(-1/2) S K^(-1/2): values ascend, and the largest is 1 / omega^2 of
     // the slowest mode
     assert(count <= size && count <= PARAMETER_MODES_MOST &&
-           a->links <= PARAMETER_LIST_MOST);
+           a->links <= PARAMETER_MODAL_LINKS);
     scaled_mass(a, scaled);
     const bool found = symmetric_eigen(size, scaled, values, scratch);
     assert(found);

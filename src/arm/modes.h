@@ -47,7 +47,7 @@ void modes_matrices(const arm *a, double *mass, double *stiffness);
 //
 // y the unit eigenvectors of K^(-1/2) M K^(-1/2) with the values 1/w^2. C takes nothing
 // from an arm that turns as a whole; ratios that grow with w make it proportional to K.
-// Returns how many rows there are, 0 for the empty list. At most PARAMETER_LIST_MOST
-// links.
+// Returns how many rows there are, 0 for the empty list. At most
+// PARAMETER_MODAL_LINKS links.
 int modal_damping_rows(const arm *a, const char *ratios,
-                       double rows[][PARAMETER_LIST_MOST]);
+                       double rows[][PARAMETER_MODAL_LINKS]);

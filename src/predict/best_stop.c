@@ -72,7 +72,7 @@ bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
     return (features & needed) == needed &&
            (features & NOT_OF_THESIS & ~HAS(LIMITED)) == 0 &&
            p->arm.hub_joint == HUB_RIGID && p->arm.damping_ratio == 0 &&
-           m->mass_force > 0;
+           p->arm.joint_damping[0] == '\0' && m->mass_force > 0;
 }
 
 bool pressed_after_impact(const parameters *p, const three_body_state *before,

@@ -85,21 +85,26 @@ static bool printed_energy_force(const parameters *p, const three_body_state *s,
 // largest, as 4.3 proposes. The arm on the wall is a damped oscillator of one degree of
 // freedom with the decay d and the frequency w. From a bend b that grows at b' it is
 // largest after the phase atan(b'/(w b)), and the energy has fallen by exp(-2 d phase/w).
-// 1 without arm.damping_ratio.
+// 1 without such damping.
 static double share_undamped(const parameters *p, const two_link *t,
                              const three_body_state *s)
 {
-    if (p->arm.damping_ratio == 0) {
+    const bool singly = p->arm.joint_damping[0] != '\0';
+    if (p->arm.damping_ratio == 0 && !singly) {
         return 1;
     }
 
-    // the time constant, joint damping over joint stiffness, of this arm with two links
+    // the time constant, joint damping over joint stiffness: of this arm with two links,
+    // or that of every joint
     arm a;
     parameters two_links = *p;
-    two_links.arm.links = 2;
-    two_links.arm.hub_joint = HUB_RIGID;
-    two_links.arm.link_inertia = two_link_inertia(p);
-    two_links.arm.joint_stiffness[0] = two_links.arm.link_lengths[0] = '\0';
+    if (!singly) {
+        two_links.arm.links = 2;
+        two_links.arm.hub_joint = HUB_RIGID;
+        two_links.arm.link_inertia = two_link_inertia(p);
+        two_links.arm.joint_stiffness[0] = two_links.arm.link_lengths[0] =
+            two_links.arm.link_masses[0] = two_links.arm.link_inertias[0] = '\0';
+    }
     arm_init(&a, &two_links);
     const double time_constant = a.joint_damping / a.joint_stiffness;
 

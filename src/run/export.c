@@ -26,7 +26,7 @@ static json_t *parameter_value(const parameters *p, int index)
     }
 
     // words and texts as a scenario file would have them
-    char text[PARAMETER_TEXT_SIZE];
+    char text[PARAMETER_VALUE_SIZE];
     parameter_format(p, index, text, sizeof text);
     return json_text(text);
 }

@@ -23,7 +23,7 @@ uint64_t block_origin_with(uint64_t origin, const char *text)
 uint64_t block_origin(const scenario *s)
 {
     // version and parameters
-    char text[PARAMETER_TEXT_SIZE];
+    char text[PARAMETER_VALUE_SIZE];
     uint64_t origin = block_origin_with(0xcbf29ce484222325u, lab_version());
     for (int i = 0; i < parameter_count; i++) {
         parameter_format(&s->parameters, i, text, sizeof text);

@@ -45,7 +45,8 @@ const char *action_path(const action *a, char path[ACTION_PATH])
 {
     assert(a->kind == ACTION_SET);
     const char *name = is_setting(a) ? a->text : "";
-    snprintf(path, ACTION_PATH, "%s%s", parameter_table[a->parameter].path, name);
+    snprintf(path, ACTION_PATH, "%s%.*s", parameter_table[a->parameter].path,
+             PARAMETER_TEXT_SIZE, name);
     return path;
 }
 

@@ -225,7 +225,7 @@ const char *reader_value_text(reader *r, const tree_node *node, const char *path
 // `list`, each checked so that a fault is reported at its place. A value that is no YAML
 // list is returned as it is. NULL after a fault.
 static const char *list_text(reader *r, const tree_node *node, int index,
-                             char list[PARAMETER_TEXT_SIZE])
+                             char list[PARAMETER_VALUE_SIZE])
 {
     const char *path = parameter_table[index].path;
     if (node->kind != TREE_LIST) {
@@ -246,11 +246,11 @@ static const char *list_text(reader *r, const tree_node *node, int index,
             report_node(r, child, "%s", f.text);
             return NULL;
         }
-        used += (size_t)snprintf(list + used, PARAMETER_TEXT_SIZE - used, "%s%s",
+        used += (size_t)snprintf(list + used, PARAMETER_VALUE_SIZE - used, "%s%s",
                                  used > 0 ? ", " : "", text);
-        if (used >= PARAMETER_TEXT_SIZE) {
+        if (used >= PARAMETER_VALUE_SIZE) {
             report_node(r, child, "%s is too long, expected at most %d characters", path,
-                        PARAMETER_TEXT_SIZE - 1);
+                        PARAMETER_VALUE_SIZE - 1);
             return NULL;
         }
     }
@@ -324,7 +324,7 @@ void reader_group(reader *r, const tree_node *map, const char *group)
         }
 
         // any other value, and its place in the file
-        char list[PARAMETER_TEXT_SIZE];
+        char list[PARAMETER_VALUE_SIZE];
         const char *text;
         if (parameter_table[index].type == PARAMETER_LIST) {
             text = list_text(r, child, index, list);

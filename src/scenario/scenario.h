@@ -67,10 +67,10 @@ typedef struct action {
     int parameter; // ACTION_SET: index in parameter_table
     double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the
                    // last link, positive towards growing angle [N s]
-    char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new
-                                    // value; of one number of control.settings ".NAME"
-    bool added;                     // not of the scenario's file
-    int line;                       // in that file, from 1; 0: none
+    char text[PARAMETER_VALUE_SIZE]; // ACTION_SET of a parameter that is a text: its new
+                                     // value; of one number of control.settings ".NAME"
+    bool added;                      // not of the scenario's file
+    int line;                        // in that file, from 1; 0: none
 } action;
 
 enum { ACTION_PATH = 192 }; // room for the path that an action sets

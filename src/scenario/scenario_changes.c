@@ -20,7 +20,7 @@ static bool is_changed(const scenario *s, int index, char *text, size_t size)
 {
     static const parameters none;
     const parameters *from = s->written != NULL ? &s->written->values : &none;
-    char value[PARAMETER_TEXT_SIZE], written[PARAMETER_TEXT_SIZE];
+    char value[PARAMETER_VALUE_SIZE], written[PARAMETER_VALUE_SIZE];
     parameter_format(&s->parameters, index, value, sizeof value);
     parameter_format(from, index, written, sizeof written);
     if (!s->parameters.set[index] || strcmp(value, written) == 0 ||
@@ -34,7 +34,7 @@ static bool is_changed(const scenario *s, int index, char *text, size_t size)
 // Writes an action in words, such as "motor.voltage = 2 V at 0.4 s".
 static void format_action(char *text, size_t size, const action *a)
 {
-    char value[PARAMETER_TEXT_SIZE], set[3 * PARAMETER_TEXT_SIZE], path[ACTION_PATH];
+    char value[PARAMETER_VALUE_SIZE], set[3 * PARAMETER_VALUE_SIZE], path[ACTION_PATH];
     if (a->kind == ACTION_PUSH) {
         snprintf(text, size, "a push of %g N s at %g s", a->value, a->time);
         return;
@@ -76,7 +76,7 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
 
     // as many changes as there is room for, beside the count of the others
     for (int i = 0; i < parameter_count + s->action_count; i++) {
-        char words[4 * PARAMETER_TEXT_SIZE];
+        char words[4 * PARAMETER_VALUE_SIZE];
         if (!change_in_words(s, i, words, sizeof words)) {
             continue;
         }

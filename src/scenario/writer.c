@@ -60,7 +60,7 @@ static void write_text(FILE *stream, const char *text)
 static void write_value(FILE *stream, const parameters *p, int index)
 {
     const parameter_info *info = &parameter_table[index];
-    char text[PARAMETER_TEXT_SIZE];
+    char text[PARAMETER_VALUE_SIZE];
     parameter_format(p, index, text, sizeof text);
     if (info->type == PARAMETER_TEXT) {
         write_text(stream, text);
@@ -116,7 +116,7 @@ static void write_actions(FILE *stream, const scenario *s)
         // the value as the parameter table writes it
         if (a->kind == ACTION_SET) {
             parameters scratch = s->parameters;
-            char path[ACTION_PATH], value[PARAMETER_TEXT_SIZE];
+            char path[ACTION_PATH], value[PARAMETER_VALUE_SIZE];
             action_apply(a, &scratch, NULL);
             fprintf(stream, "    set: {%s: ", action_path(a, path));
             if (parameter_is_text(&parameter_table[a->parameter]) && !action_is_text(a)) {

@@ -35,7 +35,7 @@ bool same_base(const scenario *a, const scenario *b)
 
     // every parameter, as it is written
     for (int i = 0; same && i < parameter_count; i++) {
-        char one[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
+        char one[PARAMETER_VALUE_SIZE], other[PARAMETER_VALUE_SIZE];
         parameter_format(&a->parameters, i, one, sizeof one);
         parameter_format(&b->parameters, i, other, sizeof other);
         same = strcmp(one, other) == 0;

@@ -26,7 +26,7 @@
 
 struct background_run;
 
-enum { SESSION_INPUT_TEXT = 160 };
+enum { SESSION_INPUT_TEXT = PARAMETER_VALUE_SIZE };
 
 typedef enum session_input_kind {
     SESSION_INPUT_START, // another value from the start
@@ -36,12 +36,12 @@ typedef enum session_input_kind {
 
 typedef struct session_input {
     session_input_kind kind;
-    double time;                    // from which it takes effect [s]
-    int parameter;                  // index in parameter_table; -1 for a push
-    double value;                   // the new value; push: impulse [N s]
-    char kept[PARAMETER_TEXT_SIZE]; // the new value of a text, as in an action
-    char text[SESSION_INPUT_TEXT];  // how it was given, for files and people
-    double before;                  // the value until then; NaN for a text and for a push
+    double time;                     // from which it takes effect [s]
+    int parameter;                   // index in parameter_table; -1 for a push
+    double value;                    // the new value; push: impulse [N s]
+    char kept[PARAMETER_VALUE_SIZE]; // the new value of a text, as in an action
+    char text[SESSION_INPUT_TEXT];   // how it was given, for files and people
+    double before;    // the value until then; NaN for a text and for a push
     unsigned gesture; // undone together with its neighbours of this number; 0: alone
     double seen_at;   // where the cursor was when it was given [s]
     size_t seen_row;

@@ -269,7 +269,8 @@ static void compute_beam(const parameters *p, double speed, links_row *rows)
     if (p->arm.tip_mass > 0 || !parameters_even_links(&p->arm)) {
         return;
     }
-    if (p->wall.contact == WALL_RIGID && p->arm.damping_ratio == 0) {
+    if (p->wall.contact == WALL_RIGID && p->arm.damping_ratio == 0 &&
+        p->arm.joint_damping[0] == '\0') {
         // the blow's closed form is that of a beam without damping which the wall stops
         // at once
         rows[MOMENTUM].beam = links_beam_momentum(p, speed, MOMENTUM_WINDOW);

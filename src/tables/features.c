@@ -135,12 +135,13 @@ static const rule rules[] = {
     {"wall.[!ka]* method.rest_speed printed.force_* printed.program "
      "printed.reevaluation printed.clamp_force printed.feed_newmark_acceleration",
      HAS(WALL), "there is no wall (wall.kind)"},
-    {"arm.damping_ratio arm.modal_ratios arm.joint_stiffness "
-     "arm.link_lengths arm.air_drag arm.stiffening arm.tip_mass arm.tilt "
+    {"arm.damping_ratio arm.modal_ratios arm.joint_* arm.link_lengths "
+     "arm.link_masses arm.link_inertias arm.air_drag arm.stiffening arm.tip_mass "
+     "arm.tilt "
      "wall.restitution method.rest_speed method.residual_bound",
      HAS(CORRECTED), "the printed model has none", true},
-    {FORCE_LIST(PATH_OF_FORCE) "arm.joint_stiffness arm.link_lengths wall.motion "
-                               "method.engine",
+    {FORCE_LIST(PATH_OF_FORCE) "arm.joint_* arm.link_lengths arm.link_masses "
+                               "arm.link_inertias wall.motion method.engine",
      HAS(EVENT), "it runs with method.name = event only", true},
     {"motor.current_limit", HAS(EVENT) | HAS(CURRENT_DRIVE),
      "under a voltage it runs with method.name = event only", true},
@@ -160,7 +161,7 @@ static const rule rules[] = {
     {"arm.k2 arm.EI arm.joint_stiffness", HAS(JOINT) | HAS(TOLD_K2), ONE_LINK},
     {"arm.stiffening", HAS(JOINT), ONE_LINK},
     {"arm.damping_ratio", HAS(BENDS) | HAS(TOLD_DAMPING), ONE_LINK},
-    {"arm.modal_ratios", HAS(BENDS), ONE_LINK},
+    {"arm.modal_ratios arm.joint_damping", HAS(BENDS), ONE_LINK},
 
     // motor
     {"motor.voltage", HAS(NO_LAW), "the control law commands the voltage"},
@@ -374,7 +375,7 @@ status features_check(const parameters *p, fault *f)
         // any other value than the default is refused
         parameters defaults;
         parameters_defaults(&defaults, ARM_CORRECTED);
-        char value[PARAMETER_TEXT_SIZE], default_value[PARAMETER_TEXT_SIZE];
+        char value[PARAMETER_VALUE_SIZE], default_value[PARAMETER_VALUE_SIZE];
         parameter_format(p, i, value, sizeof value);
         parameter_format(&defaults, i, default_value, sizeof default_value);
         if (strcmp(value, default_value) != 0) {

@@ -38,7 +38,14 @@ REAL(arm, EI, "bending stiffness of the beam, in place of arm.k2 = 2 EI/length",
 LIST(arm, joint_stiffness, "stiffness of every joint between links from the hub outwards, of a "
     "beam the root's first, in place of arm.k2", "N m/rad", 1e-6, 1e9)
 LIST(arm, link_lengths, "length of every link from the hub outwards, in place of arm.length; "
-    "masses go with the lengths", "m", 1e-4, 100)
+    "masses go with the lengths, unless arm.link_masses gives them", "m", 1e-4, 100)
+LIST(arm, link_masses, "mass of every link from the hub outwards, in place of arm.mass",
+    "kg", 1e-6, 1e4)
+LIST(arm, link_inertias, "moment of inertia of every link about its centre of mass, its middle, in "
+    "place of a uniform rod's m l^2/12", "kg m2", 0, 1e4)
+LIST(arm, joint_damping, "viscous damping of every joint from the hub outwards, of a hub spring or "
+    "a beam's root first, in place of arm.damping_ratio; one number holds for all",
+    "N m s/rad", 0, 1e6)
 REAL(arm, damping_ratio, "structural damping ratio of the first clamped-free mode",
     "", 0, 1, DEFAULT(0), SYMBOL("ζ"))
 LIST(arm, modal_ratios, "damping ratios of the modes with the hub held, from the slowest on, in "

@@ -19,6 +19,15 @@ static const parameter_info *info_of_parameter(int index)
     return &parameter_table[index];
 }
 
+// The room for the text of a parameter that is kept as one.
+static size_t size_of_text(const parameter_info *info)
+{
+    if (info->type == PARAMETER_LIST) {
+        return PARAMETER_VALUE_SIZE;
+    }
+    return PARAMETER_TEXT_SIZE;
+}
+
 // Stores a number as the value of a parameter, in the parameter's type. A text or list
 // gets its default instead.
 static void store(parameters *p, const parameter_info *info, double value)
@@ -32,7 +41,10 @@ static void store(parameters *p, const parameter_info *info, double value)
         *(int *)at = (int)value;
     } else {
         const char *text = info->choices != NULL ? info->choices : "";
-        memset(at, 0, PARAMETER_TEXT_SIZE);
+        if (strcmp(at, text) == 0) {
+            return; // lists are long, and mostly empty
+        }
+        memset(at, 0, size_of_text(info));
         memcpy(at, text, strnlen(text, PARAMETER_TEXT_SIZE - 1));
     }
 }
@@ -194,7 +206,7 @@ static status store_text(parameters *p, int index, const char *text, size_t leng
 
 // A list that is being put together in the form in which parameters hold it: "10, 12, 9".
 typedef struct list_text {
-    char text[PARAMETER_TEXT_SIZE];
+    char text[PARAMETER_VALUE_SIZE];
     size_t used; // bytes of the text
     int count;   // numbers in it
 } list_text;
@@ -212,8 +224,8 @@ static status append_number(list_text *list, const parameter_info *info, double 
     if (list->count == PARAMETER_LIST_MOST || list->used >= sizeof list->text) {
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, info->path,
-            "%s is too long, expected at most %d numbers and 127 characters", info->path,
-            PARAMETER_LIST_MOST);
+            "%s is too long, expected at most %d numbers and %d characters", info->path,
+            PARAMETER_LIST_MOST, PARAMETER_VALUE_SIZE - 1);
     }
     list->count++;
     return STATUS_OK;

@@ -37,9 +37,11 @@ typedef enum listing_reevaluation {
 
 enum {
     PARAMETER_TEXT_SIZE = 128,   // room for a parameter that is a text, its end included
+    PARAMETER_VALUE_SIZE = 1024, // the same for a list, and for any value as a text
     PARAMETER_LINKS_MOST = 1024, // largest arm.links
-    PARAMETER_LIST_MOST = 32,    // numbers of a parameter that is a list
-    PARAMETER_MODES_MOST = 16    // of arm.modal_ratios
+    PARAMETER_LIST_MOST = 128,   // numbers of a parameter that is a list
+    PARAMETER_MODES_MOST = 16,   // of arm.modal_ratios
+    PARAMETER_MODAL_LINKS = 32   // largest arm.links with them
 };
 
 typedef enum playback_hold { PLAYBACK_HOLD, PLAYBACK_LINEAR } playback_hold;
@@ -66,7 +68,7 @@ enum { CONTROL_MOST_DELAY = 5 }; // from a sample to its command [periods]
 #define CHOICE(group, field, ...)  int field;
 #define BOOLEAN(group, field, ...) bool field;
 #define TEXT(group, field, ...)    char field[PARAMETER_TEXT_SIZE];
-#define LIST(group, field, ...)    char field[PARAMETER_TEXT_SIZE];
+#define LIST(group, field, ...)    char field[PARAMETER_VALUE_SIZE];
 #define END_GROUP(name)                                                                  \
     }                                                                                    \
     name;
@@ -145,8 +147,15 @@ void parameters_link_lengths(const arm_parameters *a, double *lengths);
 // the inner joints.
 void parameters_joint_stiffness(const arm_parameters *a, double *stiffness);
 
-// Whether all links have one length and all joints the stiffness of one beam, as they do
-// without lists; a hub spring of its own does not count.
+// The same of each link's mass [kg] and moment of inertia about its centre [kg m2], and
+// of the damping in the joint before it as arm.joint_damping has it [N m s/rad], else 0.
+void parameters_link_masses(const arm_parameters *a, double *masses);
+void parameters_link_inertias(const arm_parameters *a, double *inertias);
+void parameters_joint_damping(const arm_parameters *a, double *damping);
+
+// Whether all links have one length, mass and inertia, the latter of uniform rods if
+// there are not two, and all joints the stiffness of one beam and one damping, as they do
+// without lists; a hub spring of its own and the damping at the hub do not count.
 bool parameters_even_links(const arm_parameters *a);
 
 // How far behind the wall an arm may start, by rounding, as a share of its length.

@@ -8,6 +8,8 @@
 #include "src/base/numbers.h"
 #include "src/tables/parameters.h"
 
+#define ROUNDING 1e-9 // of inertias that are written with few digits
+
 #define ROOT_SPRING                                                                      \
     "arm.k1 is for arm.hub_joint = spring, but with beam the root has the spring k2 N "  \
     "= %g N "                                                                            \
@@ -82,11 +84,77 @@ void parameters_joint_stiffness(const arm_parameters *a, double *stiffness)
     }
 }
 
+void parameters_link_masses(const arm_parameters *a, double *masses)
+{
+    assert(a->links > 0);
+    double listed[PARAMETER_LIST_MOST], length[PARAMETER_LIST_MOST];
+    const int count = parameter_list_numbers(a->link_masses, listed);
+    if (a->link_lengths[0] != '\0') {
+        parameters_link_lengths(a, length);
+    }
+    for (int k = 0; k < a->links; k++) {
+        if (count == a->links) {
+            masses[k] = listed[k];
+        } else if (a->link_lengths[0] != '\0') {
+            masses[k] = a->mass / a->length * length[k];
+        } else {
+            masses[k] = a->mass / a->links;
+        }
+    }
+}
+
+void parameters_link_inertias(const arm_parameters *a, double *inertias)
+{
+    assert(a->links <= PARAMETER_LIST_MOST);
+    double listed[PARAMETER_LIST_MOST], length[PARAMETER_LIST_MOST],
+        mass[PARAMETER_LIST_MOST];
+    const int count = parameter_list_numbers(a->link_inertias, listed);
+    const bool pair = a->links == 2 && !isnan(a->link_inertia);
+    parameters_link_lengths(a, length);
+    parameters_link_masses(a, mass);
+    for (int k = 0; k < a->links; k++) {
+        if (count == a->links) {
+            inertias[k] = listed[k];
+        } else if (pair && a->link_lengths[0] == '\0' && a->link_masses[0] == '\0') {
+            inertias[k] = a->link_inertia;
+        } else {
+            inertias[k] = mass[k] * length[k] * length[k] / 12;
+        }
+    }
+}
+
+void parameters_joint_damping(const arm_parameters *a, double *damping)
+{
+    assert(a->links > 0);
+    double listed[PARAMETER_LIST_MOST];
+    const int count = parameter_list_numbers(a->joint_damping, listed);
+    const int without = a->hub_joint == HUB_RIGID ? 1 : 0;
+    for (int k = 0; k < a->links; k++) {
+        if (count == 0 || k < without) {
+            damping[k] = 0;
+        } else if (count == 1) {
+            damping[k] = listed[0];
+        } else {
+            damping[k] = listed[k - without];
+        }
+    }
+}
+
+// Whether a parameter lists what belongs to each link or joint.
+static bool has_lists(const arm_parameters *a)
+{
+    return a->joint_stiffness[0] != '\0' || a->link_lengths[0] != '\0' ||
+           a->link_masses[0] != '\0' || a->link_inertias[0] != '\0' ||
+           strchr(a->joint_damping, ',') != NULL;
+}
+
 bool parameters_even_links(const arm_parameters *a)
 {
     assert(a->links > 0);
-    double length[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST];
-    if (a->joint_stiffness[0] == '\0' && a->link_lengths[0] == '\0') {
+    double length[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST],
+        mass[PARAMETER_LIST_MOST], inertia[PARAMETER_LIST_MOST],
+        damping[PARAMETER_LIST_MOST];
+    if (!has_lists(a)) {
         return true;
     }
 
@@ -94,12 +162,19 @@ bool parameters_even_links(const arm_parameters *a)
     // twice as stiff
     parameters_link_lengths(a, length);
     parameters_joint_stiffness(a, stiffness);
-    const double joint = stiffness[a->links - 1];
-    bool even = a->links == 1 || a->hub_joint != HUB_BEAM || stiffness[0] / 2 == joint;
+    parameters_link_masses(a, mass);
+    parameters_link_inertias(a, inertia);
+    parameters_joint_damping(a, damping);
+    const int last = a->links - 1;
+    bool even =
+        a->links == 1 || a->hub_joint != HUB_BEAM || stiffness[0] / 2 == stiffness[last];
     for (int k = 1; k < a->links; k++) {
-        even = even && length[k] == length[0] && stiffness[k] == joint;
+        even = even && length[k] == length[0] && stiffness[k] == stiffness[last] &&
+               mass[k] == mass[0] && inertia[k] == inertia[0] &&
+               damping[k] == damping[last];
     }
-    return even;
+    const double rod = mass[0] * length[0] * length[0] / 12;
+    return even && (a->links == 2 || a->link_inertias[0] == '\0' || inertia[0] == rod);
 }
 
 // The stiffness of the root: that of the beam between the hub and the middle of the first
@@ -191,50 +266,102 @@ static const char *plural(int count)
     return "s";
 }
 
-// Checks the lists of joint stiffnesses and link lengths: one number for each joint or
-// link, and no parameter given beside a list that replaces it.
+// Checks that a list has as many numbers as the arm has links or joints, `expected`; none
+// is no list.
+static status check_count(const parameters *p, int list, int expected, const char *of,
+                          fault *f)
+{
+    double numbers[PARAMETER_LIST_MOST];
+    const int count = parameter_get_list(p, list, numbers);
+    const int links = PARAMETER_INDEX(arm.links);
+    if (count > 0 && count != expected) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO,
+                            first_given(p, (const int[]){list, links, -1}),
+                            "%s has %d number%s, expected %d: arm.links = %d have %s",
+                            parameter_table[list].path, count, plural(count), expected,
+                            p->arm.links, of);
+    }
+    return STATUS_OK;
+}
+
+// Refuses a list beside a parameter that it replaces, if both were given.
+static status check_replaced(const parameters *p, int list, int replaced, fault *f)
+{
+    if (p->set[replaced] != 0 &&
+        ((const char *)p)[parameter_table[list].offset] != '\0') {
+        return fault_set_at(f, STATUS_BAD_SCENARIO,
+                            first_given(p, (const int[]){list, replaced, -1}),
+                            "%s and %s are both given, expected one of them",
+                            parameter_table[list].path, parameter_table[replaced].path);
+    }
+    return STATUS_OK;
+}
+
+// Checks the lists of links and joints: one number for each of them, and no parameter
+// given beside a list that replaces it.
 static status check_lists(const parameters *p, fault *f)
 {
     const arm_parameters *a = &p->arm;
-    double numbers[PARAMETER_LIST_MOST];
-    const int stiffnesses = parameter_list_numbers(a->joint_stiffness, numbers);
-    const int lengths = parameter_list_numbers(a->link_lengths, numbers);
-    const bool beam = a->hub_joint == HUB_BEAM;
-    const int joints = a->links - !beam;
+    const int stiffness = PARAMETER_INDEX(arm.joint_stiffness);
+    const int lengths = PARAMETER_INDEX(arm.link_lengths);
+    const int masses = PARAMETER_INDEX(arm.link_masses);
+    const int inertias = PARAMETER_INDEX(arm.link_inertias);
+    const int damping = PARAMETER_INDEX(arm.joint_damping);
+    const char *joints = "a joint between each two";
+    if (a->hub_joint == HUB_BEAM) {
+        joints = "a joint before each (arm.hub_joint = beam)";
+    }
 
     // their lengths
-    if (stiffnesses > 0 && stiffnesses != joints) {
-        return fault_set_at(
-            f, STATUS_BAD_SCENARIO, BLAME2(p, arm.joint_stiffness, arm.links),
-            "arm.joint_stiffness has %d number%s, expected %d: arm.links = %d have %s",
-            stiffnesses, plural(stiffnesses), joints, a->links,
-            beam ? "a joint before each (arm.hub_joint = beam)"
-                 : "a joint between each two");
+    TRY(check_count(p, stiffness, a->links - (a->hub_joint != HUB_BEAM), joints, f));
+    TRY(check_count(p, lengths, a->links, "one each", f));
+    TRY(check_count(p, masses, a->links, "one each", f));
+    TRY(check_count(p, inertias, a->links, "one each", f));
+    if (a->hub_joint == HUB_SPRING) {
+        joints = "a joint before each (arm.hub_joint = spring)";
     }
-    if (lengths > 0 && lengths != a->links) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO,
-                            BLAME2(p, arm.link_lengths, arm.links),
-                            "arm.link_lengths has %d number%s, but arm.links = %d",
-                            lengths, plural(lengths), a->links);
+    if (strchr(a->joint_damping, ',') != NULL) {
+        TRY(check_count(p, damping, a->links - (a->hub_joint == HUB_RIGID), joints, f));
     }
 
     // parameters that a list replaces
-    if (stiffnesses > 0 && (IS_SET(p, arm.k2) || IS_SET(p, arm.EI))) {
+    TRY(check_replaced(p, stiffness, PARAMETER_INDEX(arm.k2), f));
+    TRY(check_replaced(p, stiffness, PARAMETER_INDEX(arm.EI), f));
+    TRY(check_replaced(p, lengths, PARAMETER_INDEX(arm.length), f));
+    TRY(check_replaced(p, masses, PARAMETER_INDEX(arm.mass), f));
+    TRY(check_replaced(p, inertias, PARAMETER_INDEX(arm.link_inertia), f));
+    if ((a->link_lengths[0] != '\0' || a->link_masses[0] != '\0') &&
+        IS_SET(p, arm.link_inertia)) {
         return fault_set_at(
-            f, STATUS_BAD_SCENARIO, BLAME3(p, arm.joint_stiffness, arm.k2, arm.EI),
-            "arm.joint_stiffness and %s are both given, expected one of them",
-            IS_SET(p, arm.k2) ? "arm.k2" : "arm.EI");
+            f, STATUS_BAD_SCENARIO,
+            BLAME3(p, arm.link_inertia, arm.link_lengths, arm.link_masses),
+            "arm.link_inertia is for two equal links, expected arm.link_inertias or that "
+            "of uniform rods beside lists of lengths or masses");
     }
-    if (lengths > 0 && IS_SET(p, arm.length)) {
-        return fault_set_at(
-            f, STATUS_BAD_SCENARIO, BLAME1(p, arm.link_lengths),
-            "arm.link_lengths and arm.length are both given, expected one of them");
+    return STATUS_OK;
+}
+
+// Checks that no link has more inertia than its mass can have within its length: m l^2/4,
+// with half of it at either end. Lengths and masses are resolved.
+static status check_inertias(const parameters *p, fault *f)
+{
+    double length[PARAMETER_LIST_MOST], mass[PARAMETER_LIST_MOST],
+        inertia[PARAMETER_LIST_MOST];
+    if (p->arm.link_inertias[0] == '\0') {
+        return STATUS_OK;
     }
-    if (lengths > 0 && IS_SET(p, arm.link_inertia)) {
-        return fault_set_at(
-            f, STATUS_BAD_SCENARIO, BLAME2(p, arm.link_inertia, arm.link_lengths),
-            "arm.link_inertia is for two equal links; those of arm.link_lengths "
-            "take the inertia of a uniform rod");
+    parameters_link_lengths(&p->arm, length);
+    parameters_link_masses(&p->arm, mass);
+    parameters_link_inertias(&p->arm, inertia);
+    for (int k = 0; k < p->arm.links; k++) {
+        const double most = mass[k] * length[k] * length[k] / 4;
+        if (inertia[k] > most * (1 + ROUNDING)) {
+            return fault_set_at(
+                f, STATUS_BAD_SCENARIO, BLAME1(p, arm.link_inertias),
+                "arm.link_inertias gives link %d %g kg m2, expected at most m l^2/4 = %g "
+                "kg m2: its mass of %g kg with a half at either end of its %g m",
+                k + 1, inertia[k], most, mass[k], length[k]);
+        }
     }
     return STATUS_OK;
 }
@@ -254,11 +381,18 @@ static status check_damping(const parameters *p, fault *f)
                             "arm.modal_ratios and arm.damping_ratio are both given, "
                             "expected one of them");
     }
-    if (ratios > 0 && a->links > PARAMETER_LIST_MOST) {
+    if (a->joint_damping[0] != '\0' && (ratios > 0 || a->damping_ratio > 0)) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO,
+            BLAME3(p, arm.joint_damping, arm.damping_ratio, arm.modal_ratios),
+            "arm.joint_damping and %s are both given, expected one of them",
+            ratios > 0 ? "arm.modal_ratios" : "arm.damping_ratio");
+    }
+    if (ratios > 0 && a->links > PARAMETER_MODAL_LINKS) {
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, BLAME2(p, arm.modal_ratios, arm.links),
             "arm.modal_ratios is for at most %d links, but arm.links = %d",
-            PARAMETER_LIST_MOST, a->links);
+            PARAMETER_MODAL_LINKS, a->links);
     }
     if (ratios > most) {
         return fault_set_at(
@@ -284,11 +418,11 @@ static status check_stiffening(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// Checks the lists and makes the arm's length the sum of its link lengths, if they are
-// given.
+// Checks the lists and makes the arm's length and mass the sums of those of its links, if
+// these are given.
 static status resolve_lists(parameters *p, fault *f)
 {
-    double numbers[PARAMETER_LIST_MOST], length = 0;
+    double numbers[PARAMETER_LIST_MOST], length = 0, mass = 0;
     TRY(check_lists(p, f));
     const int lengths = parameter_list_numbers(p->arm.link_lengths, numbers);
     for (int k = 0; k < lengths; k++) {
@@ -297,7 +431,14 @@ static status resolve_lists(parameters *p, fault *f)
     if (lengths > 0) {
         p->arm.length = length;
     }
-    return STATUS_OK;
+    const int masses = parameter_list_numbers(p->arm.link_masses, numbers);
+    for (int k = 0; k < masses; k++) {
+        mass += numbers[k];
+    }
+    if (masses > 0) {
+        p->arm.mass = mass;
+    }
+    return check_inertias(p, f);
 }
 
 // Makes k2, EI and the stiffness of the root agree with what was given, which may be one
@@ -332,8 +473,16 @@ status parameters_resolve_arm(parameters *p, fault *f)
     TRY(check_damping(p, f));
     TRY(check_stiffening(p, f));
 
-    // a uniform rod's moment of inertia about its centre, m l^2 / 12 (errata B3)
-    if (isnan(a->link_inertia)) {
+    // the mean of the links' inertias; that of a uniform rod about its centre is
+    // m l^2 / 12 (errata B3)
+    double inertias[PARAMETER_LIST_MOST], sum = 0;
+    const int count = parameter_list_numbers(a->link_inertias, inertias);
+    for (int k = 0; k < count; k++) {
+        sum += inertias[k];
+    }
+    if (count > 0) {
+        a->link_inertia = sum / count;
+    } else if (isnan(a->link_inertia)) {
         const double m = a->mass / a->links, l = a->length / a->links;
         a->link_inertia = m * l * l / 12;
     }

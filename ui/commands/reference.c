@@ -73,21 +73,21 @@ const char *format_range(const parameter_info *info, const char *separator,
 // The default under a model as scenario files would give it, "derived" if other
 // parameters give it.
 static void format_default(int index, arm_model_kind model,
-                           char text[PARAMETER_TEXT_SIZE])
+                           char text[PARAMETER_VALUE_SIZE])
 {
     parameters p;
     parameters_defaults(&p, model);
     if (!parameter_is_text(&parameter_table[index]) && isnan(parameter_get(&p, index))) {
-        snprintf(text, PARAMETER_TEXT_SIZE, "derived");
+        snprintf(text, PARAMETER_VALUE_SIZE, "derived");
     } else {
-        parameter_format(&p, index, text, PARAMETER_TEXT_SIZE);
+        parameter_format(&p, index, text, PARAMETER_VALUE_SIZE);
     }
 }
 
 // The default, and that of the printed model if it is another; to be freed with g_free.
 static char *defaults_text(int index)
 {
-    char corrected[PARAMETER_TEXT_SIZE], printed[PARAMETER_TEXT_SIZE];
+    char corrected[PARAMETER_VALUE_SIZE], printed[PARAMETER_VALUE_SIZE];
     format_default(index, ARM_CORRECTED, corrected);
     format_default(index, ARM_PRINTED, printed);
     if (strcmp(corrected, printed) == 0) {

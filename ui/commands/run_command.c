@@ -277,7 +277,8 @@ static int report_ending(const finished_run *run, status code)
 static void note_undamped_chain(const parameters *p)
 {
     enum { LONG = 32 };
-    const bool is_damped = p->arm.damping_ratio > 0 || p->arm.modal_ratios[0] != '\0';
+    const bool is_damped = p->arm.damping_ratio > 0 || p->arm.modal_ratios[0] != '\0' ||
+                           p->arm.joint_damping[0] != '\0';
     if (p->arm.links >= LONG && !is_damped && p->method.name == METHOD_EVENT) {
         fprintf(stderr,
                 "impactlab: note: nothing damps the %d links: with arm.damping_ratio = "

@@ -452,7 +452,7 @@ static void write_command(const explorer_model *model, FILE *stream)
 static void write_value(const explorer_model *model, const explorer_view *view,
                         FILE *stream)
 {
-    char value[PARAMETER_TEXT_SIZE];
+    char value[PARAMETER_VALUE_SIZE];
     const int index = view->parameters.parameter;
     const parameters now = model_parameters(model);
     parameter_format(&now, index, value, sizeof value);

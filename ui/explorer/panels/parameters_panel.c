@@ -161,7 +161,7 @@ static void draw_parameter(const explorer_model *model, const explorer_view *vie
     }
 
     // a number as it would be typed
-    char value[PARAMETER_TEXT_SIZE], shown[PARAMETER_TEXT_SIZE + 32];
+    char value[PARAMETER_VALUE_SIZE], shown[PARAMETER_VALUE_SIZE + 32];
     if (info->type == PARAMETER_REAL || held) {
         snprintf(value, sizeof value, "%.6g", k.value);
     } else {

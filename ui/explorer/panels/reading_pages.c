@@ -304,7 +304,7 @@ const panel help_panel = {.name = "help", .draw = draw_help, .key = page_key};
 // What an action of a script does, with its instant.
 static void add_script_line(page *p, const action *a)
 {
-    char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH];
+    char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH]; // no list is timed
     char *line = new_line(p)->text;
     if (a->kind == ACTION_PUSH) {
         snprintf(line, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);

@@ -137,7 +137,7 @@ void run_list_describe(const session *s, char *text, size_t size)
 // A name for the present run that no other of the list has.
 static void propose_run_name(const run_list *list, const session *s, char name[RUN_NAME])
 {
-    char text[SESSION_INPUT_TEXT + 80];
+    char text[RUN_NAME - 16];
     run_list_describe(s, text, sizeof text);
     if (s->input_count == 0 && run_list_of_scenario(list, s) < list->count) {
         snprintf(text, sizeof text, "%s", scenario_leaf(s->base.name));
