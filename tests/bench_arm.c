@@ -4,10 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STEP             5e-5  // [s]
-#define COUPLING         300.0 // of the rotor, out of its play [N m/rad]
-#define COUPLING_DAMPING 0.02  // [N m s/rad]
-#define CREEP            2e-3  // velocity below which friction is viscous [rad/s]
+#define STEP             5e-5 // [s]
+#define COUPLING_DAMPING 0.02 // [N m s/rad]
+#define CREEP            2e-3 // velocity below which friction is viscous [rad/s]
 
 // Volts, force in the sensor, rotor's angle and velocity, rods' angles and velocities.
 enum { VOLTS, FELT, ROTOR, ROTOR_VELOCITY, RODS, STATES = RODS + 2 * BENCH_LINKS };
@@ -34,13 +33,13 @@ static void solve(int n, double a[][BENCH_LINKS], double *b)
 
 // The torque of the rotor on the first rod, which are `apart` [rad] and `moving` apart
 // [rad/s].
-static double coupling(double play, double apart, double moving)
+static double coupling(const bench_arm *a, double apart, double moving)
 {
-    const double out = fmax(fabs(apart) - play / 2, 0);
+    const double out = fmax(fabs(apart) - a->play / 2, 0);
     if (out == 0) {
         return 0;
     }
-    return copysign(COUPLING * out, apart) + COUPLING_DAMPING * moving;
+    return copysign(a->coupling * out, apart) + COUPLING_DAMPING * moving;
 }
 
 // The force of the wall at angle 0 on the tip of rods q with velocities w.
@@ -64,7 +63,7 @@ static void rates(const bench_arm *a, double command, const double *y, double *r
     const double l = a->length / n, m = a->mass / n;
     const double *q = y + RODS, *w = q + n;
     const double force = wall_force(a, q, w);
-    const double torque = coupling(a->play, y[ROTOR] - q[0], y[ROTOR_VELOCITY] - w[0]);
+    const double torque = coupling(a, y[ROTOR] - q[0], y[ROTOR_VELOCITY] - w[0]);
     double matrix[BENCH_LINKS][BENCH_LINKS], right[BENCH_LINKS];
 
     // the rods

@@ -26,6 +26,7 @@ typedef struct bench_arm {
     double start;                              // angle, at rest [rad]
     double amplifier_lag;                      // time constant [s]
     double play;                               // of the hub on the rotor, in all [rad]
+    double coupling;      // of the hub to the rotor, out of its play [N m/rad]
     double joint_damping; // of each joint between two rods, by MuJoCo alone [N m s/rad]
     double force_lag;     // time constant of the force sensor [s]
 } bench_arm;

@@ -9,9 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define COUPLING         300.0 // of the rotor, out of its play [N m/rad]
-#define COUPLING_DAMPING 0.02  // [N m s/rad]
-#define CREEP            2e-3  // velocity below which friction is viscous [rad/s]
+#define COUPLING_DAMPING 0.02 // [N m s/rad]
+#define CREEP            2e-3 // velocity below which friction is viscous [rad/s]
 
 enum { XML_SIZE = 1 << 15 };
 
@@ -91,7 +90,7 @@ static double push(const bench_arm *a, double volts, const mjModel *model, mjDat
     const double out = fmax(fabs(apart) - a->play / 2, 0);
     double torque = 0, force = 0;
     if (out > 0) {
-        torque = copysign(COUPLING * out, apart) + COUPLING_DAMPING * moving;
+        torque = copysign(a->coupling * out, apart) + COUPLING_DAMPING * moving;
     }
     data->qfrc_applied[0] = a->torque_per_volt * volts - a->damping * data->qvel[0] -
                             a->stiction * tanh(data->qvel[0] / CREEP) - torque;

@@ -46,6 +46,7 @@ static bench_arm bench(void)
                        .start = -1.5,
                        .amplifier_lag = 2e-3,
                        .play = 1e-3,
+                       .coupling = 300,
                        .joint_damping = 0.0023 * 5.3 * BENCH_LINKS / 2,
                        .force_lag = 7e-4};
 }

@@ -46,6 +46,9 @@ static const struct {
 } texts[] = {
     {"arm.joint_stiffness", {"4", "6"}},
     {"arm.link_lengths", {"0.4,0.6", "0.55,0.45"}},
+    {"arm.link_masses", {"0.1,0.3", "0.2,0.25"}},
+    {"arm.link_inertias", {"0.002,0.004", "0.001,0.003"}},
+    {"arm.joint_damping", {"0.01", "0.05"}},
     {"arm.modal_ratios", {"0.02", "0.1"}},
     {"wall.motion_file", {"workflow/free.csv", "workflow/check.csv"}},
     {"control.plugin", {"one.so", "other.so"}},

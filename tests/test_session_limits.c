@@ -78,7 +78,7 @@ TEST(what_is_too_long_or_no_value_is_refused)
 {
     session s = opened(brief);
     fault f = {0};
-    const char *endless = repeated('1', 4 * PARAMETER_TEXT_SIZE - 1);
+    const char *endless = repeated('1', 2 * SESSION_INPUT_TEXT);
     session_seek(&s, 0.1);
     assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "2", &f),
                      STATUS_OK);
