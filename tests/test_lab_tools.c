@@ -175,6 +175,42 @@ TEST(the_arm_that_was_measured_is_found)
     press_shows(&ex, ":data off<Enter>", "no measured data (:data");
 }
 
+// While the lab searches it shows how far it is, its cursor moves, and Esc ends it with
+// nothing pinned; what comes out is about the run as it was when the search began.
+TEST(a_search_leaves_the_lab_to_its_user)
+{
+    SCOPED(explorer_finish) explorer ex;
+    open_changed(&ex, "corrected/first-impact", "", HUGE_VAL);
+    ex.model.session.patience = 0;
+    press(&ex, ":solve voltage peak_force_N<lt>2<Enter>");
+    assert_non_null(ex.model.search);
+    assert_shows_at(&ex, 80, 24, "solving, ");
+    press(&ex, ":seek 0.1<Enter><Right>");
+    check_close(ex.model.session.now, 0.101, 1e-12);
+    press_warns(&ex, ":solve voltage peak_force_N<lt>2<Enter>", "a search goes on");
+    assert_true(explorer_is_busy(&ex));
+    press(&ex, "<Esc>");
+    while (explorer_is_busy(&ex)) {
+        explorer_follow(&ex);
+    }
+    assert_non_null(strstr(ex.input.message.text, "nothing is pinned"));
+    assert_int_equal(ex.model.pinned.count, 0);
+
+    // another one, and the run is changed meanwhile
+    press(&ex, ":solve voltage peak_force_N<lt>2<Enter>:set arm.k2 20<Enter>");
+    while (explorer_is_busy(&ex)) {
+        explorer_follow(&ex);
+    }
+    assert_int_equal(ex.model.pinned.count, 1);
+    const run_result *limit = &ex.model.pinned.runs[0].run;
+    check_relative(limit->summary.peak_force_N, 2.0, 1e-6);
+    assert_int_equal(ex.model.pinned.runs[0].from.input_count, 1);
+
+    // a search that goes on is ended with the lab
+    press(&ex, ":solve voltage peak_force_N<lt>3<Enter>");
+    assert_non_null(ex.model.search);
+}
+
 // The run that a fit pins is the one that was compared: with the start, the command and
 // the clock of the recording, which are not those of the lab's run. So it moves as the
 // recorded arm did.

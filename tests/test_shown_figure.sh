@@ -33,6 +33,18 @@ mkdir elsewhere
 (cd elsewhere && expect 0 plot ../plain.yaml -o plain.png)
 cmp plain.png elsewhere/plain.png || fail "the recipe's folder changes the picture"
 
+# the arm at the cursor stands above the panels, and of a law its modes below them
+grep -q "^arm: 0" plain.yaml || fail "plain.yaml has no arm"
+sed "s/^arm: .*/arm: 0.9/" plain.yaml >moved.yaml
+sed "/^arm: /d" plain.yaml >armless.yaml
+expect 0 plot moved.yaml -o moved.png
+expect 0 plot armless.yaml -o armless.png
+cmp -s plain.png moved.png && fail "the arm does not move"
+cmp -s plain.png armless.png && fail "there is no arm"
+saved law.png 1 'open compare/hybrid' 'seek 0.4'
+grep -q "^arm: 0.4" law.yaml || fail "the arm is not at the cursor"
+grep -q "controller_mode.*label: \"impact\"" law.yaml || fail "law.yaml names no modes"
+
 # changes from the start and in time, pushes, names, bounds, notes, hidden runs, zoom, views
 saved all.pdf 3 'set motor.voltage 0.5' branch 'seek 0.3' 'set motor.voltage 2' 'push 0.02' 'pin "zwei": <&> \' \
     'set arm.k2 6' 'limit force 1.2' 'zoom 0.2 0.6' 'note @0.4 a < b & "q"' 'mark 0.35' 'seek 0.5' \

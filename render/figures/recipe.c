@@ -8,6 +8,7 @@
 #include "render/plot/axis.h"
 #include "render/plot/run_style.h"
 #include "render/plot/study_plot.h"
+#include "render/scene/plan.h"
 #include "src/base/input_file.h"
 #include "src/run/spectrum.h"
 
@@ -494,6 +495,51 @@ static void describe_horizontal(recipe *r, figure_axis *x)
     }
 }
 
+// ---- the arm
+
+// Paints a plan that fills the place.
+static void paint_arm(cairo_t *cr, const void *of, double width, double height,
+                      figure_theme theme)
+{
+    enum { SAMPLES = 2000 };
+    const palette *page = palette_of(theme);
+    plan shown = *(const plan *)of;
+    plan_extent extent = {0};
+    shown.colours = (plan_colours){.ground = page->page,
+                                   .arm = palette_series(theme, SLOT_BLUE, 0),
+                                   .hub = page->text,
+                                   .wall = page->faint_text,
+                                   .force = palette_series(theme, SLOT_VERMILLION, 1),
+                                   .other = palette_series(theme, SLOT_GREY, 2),
+                                   .frame = page->grid};
+    plan_extent_add(&extent, shown.rows, &shown.parameters->arm, 0, SAMPLES);
+    const plan_view view = plan_whole(&extent, shown.parameters, width, height);
+    plan_paint(cr, &shown, &view);
+}
+
+// The arm of the first run at an instant, and behind it that of the second, if that has
+// as many links.
+static void add_arm(recipe *r)
+{
+    enum { HEIGHT = 100 }; // [pt]
+    const opened_run *first = r->sources[0].run, *second = r->sources[1].run;
+    if (!isfinite(r->arm) || r->sources[0].kind != SOURCE_RUN ||
+        first->result.trace.row_count == 0) {
+        return;
+    }
+    const trace *other = NULL;
+    if (r->source_count > 1 && r->sources[1].kind == SOURCE_RUN &&
+        second->result.trace.angle_count == first->result.trace.angle_count) {
+        other = &second->result.trace;
+    }
+    const plan *shown =
+        OWNED(r->plot, plan, .rows = &first->result.trace,
+              .parameters = &first->scenario.parameters, .time = r->arm, .other = other,
+              .exaggerate = 1, .peak = first->result.summary.peak_force_N);
+    r->plot->figure.scene =
+        OWNED(r->plot, figure_scene, .height = HEIGHT, .paint = paint_arm, .of = shown);
+}
+
 // Fills in the figure that the recipe asks for.
 static void describe_recipe(recipe *r, const figure_options *o)
 {
@@ -507,6 +553,7 @@ static void describe_recipe(recipe *r, const figure_options *o)
         describe_recipe_panel(r, i);
     }
     describe_horizontal(r, &shown->x);
+    add_arm(r);
 
     // runs with every parameter, for the file
     GString *values = g_string_new(NULL);

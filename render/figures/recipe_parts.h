@@ -63,6 +63,8 @@ typedef struct recipe {
     double from, to; // stretch of the runs that a signal across or a spectrum takes [s]
     double columns;
     bool contact; // the first run's contact is shaded
+    double arm; // instant at which the first run's arm stands above the panels [s]; NaN:
+                // at none
     recipe_source sources[RECIPE_SOURCES];
     int source_count;
     recipe_panel panels[FIGURE_PANELS];

@@ -268,6 +268,8 @@ static const recipe_form whole = {
               .whole = true, .expected = "a whole number from 1 to 8"},
              FIELD_KEY("shared", VALUE_TRUTH, recipe, shown.shared_y),
              FIELD_KEY("contact", VALUE_TRUTH, recipe, contact),
+             {"arm", VALUE_NUMBER, offsetof(recipe, arm), .low = 0, .high = 1e9,
+              .unit = "s", .expected = "an instant of the first run"},
              ITEMS_KEY("marks", &marks, recipe, marks, shown.mark_count),
              {"multiples", .read = recipe_read_multiples}},
 };
@@ -280,6 +282,7 @@ bool recipe_read(recipe *r, const char *path, const char *text, size_t length,
     recipe_context c = {.reader = {.path = path}, .recipe = r};
     *r = (recipe){.columns = 1,
                   .contact = true,
+                  .arm = (double)NAN,
                   .over = SIGNAL_INDEX(time),
                   .from = -HUGE_VAL,
                   .to = HUGE_VAL};

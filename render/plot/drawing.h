@@ -106,7 +106,7 @@ typedef struct drawing {
     axis x;
     double left, right; // of all panels
     column_layout column[FIGURE_PANELS];
-    double title_y, legend_y, caption_y, x_label_y;
+    double title_y, scene_y, legend_y, caption_y, x_label_y;
     double marks_bottom;            // of the lowest row of event labels
     int mark_row[MARKS_LABELLED];   // counted upwards; -1: no label
     bool marks_inside;              // labels of marks are inside the first panel

@@ -170,6 +170,10 @@ void figure_size(const figure *fig, double *width, double *height)
         points += wrapped_height(fig, fig->caption, SMALL_LETTERS, false);
     }
 
+    if (fig->scene != NULL) {
+        points += fig->scene->height;
+    }
+
     *width = figure_width(fig) * POINTS_PER_MM;
     if (fig->height > 0) {
         *height = fig->height * POINTS_PER_MM;
@@ -179,6 +183,22 @@ void figure_size(const figure *fig, double *width, double *height)
 }
 
 // ---- the whole
+
+// What is painted across the page above the panels.
+static void draw_scene(const drawing *d)
+{
+    const figure_scene *s = d->fig->scene;
+    if (s == NULL) {
+        return;
+    }
+    const double width = d->page.width - 2 * PAGE_MARGIN;
+    cairo_save(d->cr);
+    cairo_translate(d->cr, PAGE_MARGIN, d->scene_y);
+    cairo_rectangle(d->cr, 0, 0, width, s->height);
+    cairo_clip(d->cr);
+    s->paint(d->cr, s->of, width, s->height, d->fig->theme);
+    cairo_restore(d->cr);
+}
 
 // The heading above a panel, and the remark in its middle.
 static void draw_panel_texts(drawing *d, const panel_layout *l)
@@ -261,6 +281,8 @@ static void draw_all(drawing *d)
                   d->style.colours->faint_text);
     }
     g_free((char *)title.markup);
+
+    draw_scene(d);
 
     // the horizontal axis once, below all columns
     const double middle = (d->column[0].left + d->column[d->columns - 1].right) / 2;

@@ -160,9 +160,19 @@ typedef struct figure_panel {
     bool key_above;
 } figure_panel;
 
+// What stands across the page between its title and its panels, painted by who knows it.
+typedef struct figure_scene {
+    double height; // [pt]
+    // Paints it into so many points from the origin on.
+    void (*paint)(cairo_t *cr, const void *of, double width, double height,
+                  figure_theme theme);
+    const void *of;
+} figure_scene;
+
 typedef struct figure {
-    const char *title;   // plain
-    const char *caption; // small, at the bottom
+    const char *title;         // plain
+    const char *caption;       // small, at the bottom
+    const figure_scene *scene; // NULL: none
     figure_axis x;
     const figure_panel *panels;
     int panel_count;

@@ -318,6 +318,10 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
         y += height_of(d, title) + 3;
     }
     g_free((char *)title.markup);
+    d->scene_y = y;
+    if (d->fig->scene != NULL) {
+        y += d->fig->scene->height;
+    }
     d->legend_y = y;
     double legend = common_legend(d, false);
     if (legend > 0) {

@@ -1,9 +1,10 @@
-// The arm from above on a screen with pixels, drawn quickly and repeatedly.
+// The arm from above, drawn quickly and repeatedly.
 #pragma once
 
 #include <assert.h>
 #include <math.h>
 
+#include "render/scene/plan_extent.h"
 #include "render/scene/scene.h"
 
 // The transformation from metres to pixels, with magnified height.
@@ -13,6 +14,11 @@ typedef struct plan_view {
     double magnified;     // times that, up
     double width, height; // [pixels]
 } plan_view;
+
+// What shows all that the arm sweeps over, and its wall, on a picture of this size
+// [pixels or dots].
+plan_view plan_whole(const plan_extent *e, const parameters *p, double width,
+                     double height);
 
 typedef struct plan_colours {
     colour ground, arm, hub, wall, force, other, frame;

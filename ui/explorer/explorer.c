@@ -31,6 +31,7 @@ void explorer_finish(explorer *ex)
 {
     if (ex != NULL) {
         data_reading_finish(ex->model.reading);
+        run_search_finish(ex->model.search);
         state_finish(&ex->model, &ex->view);
         free(ex->input.copied);
         memset(ex, 0, sizeof *ex);
@@ -69,17 +70,19 @@ bool explorer_follow(explorer *ex)
     const bool reads = ex->model.reading != NULL;
     act_take_data(&ex->model, &ex->input, 0);
     const bool has_data = reads && ex->model.reading == NULL;
+    const bool found = act_follow_search(&ex->model, &ex->input);
     const bool more = session_follow(&ex->model.session);
     if (!sweeps && more && ex->model.session.computing == NULL) {
         act_tell_failed_run(&ex->model, &ex->input);
     }
-    return sweeps || more || has_data;
+    return sweeps || more || has_data || found;
 }
 
 bool explorer_is_busy(const explorer *ex)
 {
     return ex->view.playback.playing || ex->model.session.computing != NULL ||
-           !lab_sweep_is_done(&ex->model.sweep) || ex->model.reading != NULL;
+           !lab_sweep_is_done(&ex->model.sweep) || ex->model.reading != NULL ||
+           ex->model.search != NULL;
 }
 
 void explorer_draw(explorer *ex, screen *s)

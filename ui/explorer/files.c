@@ -310,6 +310,7 @@ static bool save_over(explorer_model *model, explorer_view *view, explorer_input
             input, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt");
     }
     if (content == FILE_FIGURE) {
+        model_law_modes(model); // which a picture names
         return save_figures(model, view, input, name, width, over);
     }
     if (!over && exists(name)) {

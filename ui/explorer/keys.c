@@ -197,7 +197,7 @@ static void escape(explorer *ex)
 
     // a computation is stopped first, and nothing else; then a filter, the sweep, else
     // the mark
-    if (ex->model.session.computing != NULL) {
+    if (ex->model.session.computing != NULL || ex->model.search != NULL) {
         explorer_carry_out(ex, "stop");
         return;
     }

@@ -483,7 +483,7 @@ bool act_quit(const explorer_model *model, const explorer_view *view,
 bool act_interrupt(explorer_model *model, const explorer_view *view,
                    explorer_input *input)
 {
-    if (model->session.computing != NULL) {
+    if (model->session.computing != NULL || model->search != NULL) {
         return act_stop(model, input);
     }
     return act_quit(model, view, input);

@@ -414,7 +414,25 @@ static void write_marks(const shown_recipe *r)
     }
 }
 
-// The panes over time, with the notes and marks.
+// The modes of the law over time, named.
+static void write_modes(const shown_recipe *r)
+{
+    const law_modes *modes = &r->model->modes;
+    const char *before = "  - {signals: [controller_mode], from: [run 1], weight: 0.6, "
+                         "range: [-0.5, ";
+    if (!model_has_law(r->model) || modes->count == 0) {
+        return;
+    }
+    fprintf(r->stream, "%s%d.5], levels: [", before, modes->count - 1);
+    for (int i = 0; i < modes->count; i++) {
+        fprintf(r->stream, "%s{at: %d", i > 0 ? ", " : "", i);
+        write_plain(r, ", label: ", modes->names[i]);
+        fputc('}', r->stream);
+    }
+    fputs("]}\n", r->stream);
+}
+
+// The panes over time, with the arm, the modes of the law, notes and marks.
 static status write_over_time(shown_recipe *r, const int *panes, int count, double width,
                               fault *f)
 {
@@ -426,6 +444,9 @@ static status write_over_time(shown_recipe *r, const int *panes, int count, doub
     for (int i = 0; i < count; i++) {
         write_pane(r, panes[i]);
     }
+    write_modes(r);
+    write_value(r, "arm: ", r->model->session.now);
+    fputc('\n', r->stream);
     if (w->to > w->from) {
         write_pair(r, "x: {range: [", w->from, w->to);
         fputs("}\n", r->stream);

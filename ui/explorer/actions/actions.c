@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <glib.h>
+
 #include "src/base/units.h"
 
 bool act_clear_message(explorer_input *input)
@@ -145,6 +147,16 @@ bool act_read_pane(const explorer_view *view, explorer_input *input, const char 
 // --- the run ---------------------------------------------------------------------------
 
 #define LONGEST_WAIT 9 // for runs that are computed while the lab waits [s]
+
+bool act_wait_for(int *done, double patience)
+{
+    enum { STEP = 1000 }; // [us]
+    for (double waited = 0; !g_atomic_int_get(done) && waited < patience;
+         waited += 1e-6 * STEP) {
+        g_usleep(STEP);
+    }
+    return g_atomic_int_get(done);
+}
 
 bool act_tell_failed_run(const explorer_model *model, explorer_input *input)
 {

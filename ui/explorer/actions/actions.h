@@ -66,7 +66,6 @@ bool act_difference(explorer_model *model, const explorer_view *view,
                     explorer_input *input, const char *argument);
 bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input,
                const char *argument);
-bool act_solve(explorer_model *model, explorer_input *input, const char *argument);
 bool act_quantity(const explorer_model *model, explorer_input *input,
                   const char *argument);
 bool act_metric(explorer_model *model, explorer_input *input, const char *argument);
@@ -79,7 +78,21 @@ bool act_take_data(explorer_model *model, explorer_input *input, double patience
 // Waits for the thread of a reading and frees it; NULL is allowed.
 void data_reading_finish(data_reading *r);
 bool act_reload(explorer_model *model, explorer_input *input);
+
+// searches through many runs (search_actions.c)
+bool act_solve(explorer_model *model, explorer_input *input, const char *argument);
 bool act_identify(explorer_model *model, explorer_input *input, const char *argument);
+// Takes the results of the search, once they are there; waits at most `patience` [s].
+bool act_take_search(explorer_model *model, explorer_input *input, double patience);
+// The same without waiting. True if there is something new to show.
+bool act_follow_search(explorer_model *model, explorer_input *input);
+// Lets the search there is end soon.
+bool act_end_search(explorer_model *model, explorer_input *input);
+// How far a search is.
+enum { PROGRESS_TEXT = 64 };
+void act_write_progress(const run_search *r, char text[PROGRESS_TEXT]);
+// Ends a search, waits for its thread and frees it; NULL is allowed.
+void run_search_finish(run_search *r);
 
 // axes (axis_actions.c)
 bool act_zoom(const explorer_model *model, explorer_view *view, explorer_input *input,
@@ -200,6 +213,9 @@ bool act_read_pane(const explorer_view *view, explorer_input *input, const char 
 
 // --- the run ---------------------------------------------------------------------------
 
+// Waits until a thread has set *done, at most `patience` [s]; whether it has.
+bool act_wait_for(int *done, double patience);
+
 // Replaces the session by one of another scenario and plays it; if that fails the old one
 // stays.
 bool act_open_scenario(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -220,10 +236,6 @@ bool act_need_short_runs(const explorer_model *model, explorer_input *input,
 // Returns text.
 const char *act_full_path(const char *word, char *text, size_t size);
 
-// Pins the present run with another value from the start; act_apply_baseline is to
-// follow.
-status act_pin_value(explorer_model *model, const sweep_axis *axis, double value,
-                     const char *name, fault *f);
 // Compares the present run with the baseline of the pinned ones, else with the run as
 // opened, from now on.
 bool act_apply_baseline(explorer_model *model, explorer_input *input);

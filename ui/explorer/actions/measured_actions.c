@@ -1,4 +1,4 @@
-// Actions on measured data: laid under the run, and an arm found that moves like it.
+// Actions on measured data, which are laid under the run.
 #include "ui/explorer/actions/actions.h"
 
 #include <math.h>
@@ -8,9 +8,6 @@
 #include <glib.h>
 
 #include "src/run/trace.h"
-#include "src/study/identify/identify.h"
-
-// --- under the run ---------------------------------------------------------------------
 
 // A file that is read in a thread of its own, as that may take seconds.
 struct data_reading {
@@ -174,15 +171,8 @@ static bool take_data(explorer_model *model, explorer_input *input, data_reading
 
 bool act_take_data(explorer_model *model, explorer_input *input, double patience)
 {
-    enum { STEP = 1000 }; // [us]
     data_reading *r = model->reading;
-    for (double waited = 0; r != NULL && waited < patience; waited += 1e-6 * STEP) {
-        if (g_atomic_int_get(&r->done)) {
-            break;
-        }
-        g_usleep(STEP);
-    }
-    if (r == NULL || !g_atomic_int_get(&r->done)) {
+    if (r == NULL || !act_wait_for(&r->done, patience)) {
         return true;
     }
     model->reading = NULL;
@@ -251,115 +241,4 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
         *at = '\0';
     }
     return read_data(model, input, path, shift, plays);
-}
-
-// --- identification --------------------------------------------------------------------
-
-enum { FIT_STARTS = 12, FIT_THREADS = 4, FIT_RUNS = 600 };
-
-// Writes a fitted value with its error, or that it is not determined.
-static void write_fit(const fitted_parameter *fit, char *text, size_t size)
-{
-    text_add(text, size, "%s", strchr(fit->axis.name, '.') + 1);
-    if (!fit->determined) {
-        text_add(text, size, " is not determined");
-    } else if (identify_at_end(fit)) {
-        text_add(text, size, " %.5g, at the end of its range", fit->value);
-    } else {
-        const char *unit = sweep_axis_parameter(&fit->axis)->unit;
-        const char *blank = unit[0] ? " " : "";
-        text_add(text, size, " %.5g +- %.2g%s%s", fit->value, fit->standard_error, blank,
-                 unit);
-    }
-}
-
-// Says what was found, and what to think of it.
-static bool tell_fit(explorer_input *input, const identification *id)
-{
-    char text[MESSAGE_TEXT / 2] = "";
-    for (int i = 0; i < id->count; i++) {
-        if (i > 0) {
-            text_add(text, sizeof text, "; ");
-        }
-        write_fit(&id->fit[i], text, sizeof text);
-    }
-
-    // the fit as a whole
-    if (id->undetermined > 0) {
-        return act_tell(input, "%s: fit fewer, or record more", text);
-    }
-    double most;
-    if (identify_misfit(id, &most) > most) {
-        return act_tell(input, "%s; pinned, but far off the data", text);
-    }
-    if (!identify_settled(id)) {
-        return act_tell(input, "%s; pinned, but other starts may end better", text);
-    }
-    if (id->white) {
-        return act_tell(input, "%s; that run is pinned", text);
-    }
-    return act_tell(input, "%s; pinned, but the data show more than the model has", text);
-}
-
-// Pins the run that was compared with the data in the end, and lays these under it.
-static status pin_fitted(explorer_model *model, const identification *id, fault *f)
-{
-    scenario fitted, copy;
-    session other;
-    const recorded_trace *t = &id->traces[0];
-    TRY(identify_scenario(id, 0, &fitted, f));
-    TRY(scenario_copy(&copy, &fitted));
-    TRY(session_open(&other, &copy, HUGE_VAL, f));
-    const status code = run_list_pin(&model->pinned, &other, "identified", f);
-    session_finish(&other);
-    if (code == STATUS_OK) {
-        model_lay_data(model, -(t->begin + t->own[OWN_SHIFT]));
-    }
-    return code;
-}
-
-// Fits the parameters of a line to the measured data and pins the run that they give, if
-// any is determined.
-static status fit_and_pin(explorer_model *model, identification *id, const char *names,
-                          fault *f)
-{
-    TRY(identify_available(f));
-
-    // a parameter may be given by the last part of its path
-    char words[LINE_TEXT], *rest = words, *word;
-    snprintf(words, sizeof words, "%s", names);
-    while ((word = strtok_r(rest, " ", &rest)) != NULL) {
-        char path[2 * LINE_TEXT];
-        TRY(identify_add_path(id, act_full_path(word, path, sizeof path), f));
-    }
-    TRY(identify_add_trace(id, model->measured_file, NULL, 0, f));
-    TRY(identify_fit(id, f));
-    for (int i = 0; i < id->count; i++) {
-        if (id->fit[i].determined) {
-            return pin_fitted(model, id, f);
-        }
-    }
-    return STATUS_OK;
-}
-
-bool act_identify(explorer_model *model, explorer_input *input, const char *argument)
-{
-    if (argument[0] == '\0') {
-        return act_refuse(input, "identify takes parameters, such as k2 stiction");
-    }
-    if (model->measured.row_count == 0) {
-        return act_refuse(input, "there are no measured data: :data FILE.csv");
-    }
-    if (!act_need_whole_run(model, input) ||
-        !act_need_short_runs(model, input, "identify", FIT_RUNS)) {
-        return false;
-    }
-    identification id = {.base = &model->session.effective,
-                         .starts = FIT_STARTS,
-                         .jobs = FIT_THREADS};
-    const status code = fit_and_pin(model, &id, argument, &input->fault);
-    const bool done = act_succeeded(input, code) && tell_fit(input, &id);
-    const bool all_determined = id.undetermined == 0;
-    identify_finish(&id);
-    return done && act_apply_baseline(model, input) && all_determined;
 }

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "src/base/clock.h"
-#include "src/study/solve.h"
 
 #define LONGEST_MAP_PIECE 0.015 // of a map, between two pictures [s]
 
@@ -242,50 +241,6 @@ bool act_difference(explorer_model *model, const explorer_view *view,
     return tell_difference(model, view, input);
 }
 
-// --- limits ----------------------------------------------------------------------------
-
-enum { SOLVE_THREADS = 4 };
-
-// The signal whose values a quantity is one of, -1 if there is none.
-static int signal_of_quantity(int quantity)
-{
-    static const struct {
-        int quantity, signal;
-    } pairs[] = {{SUMMARY_INDEX(peak_force_N), SIGNAL_INDEX(force)},
-                 {SUMMARY_INDEX(first_pulse_peak_N), SIGNAL_INDEX(force)},
-                 {SUMMARY_INDEX(steady_force_N), SIGNAL_INDEX(force)},
-                 {SUMMARY_INDEX(largest_command_V), SIGNAL_INDEX(command)},
-                 {SUMMARY_INDEX(approach_speed_m_s), SIGNAL_INDEX(gap_velocity)}};
-    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
-        if (pairs[i].quantity == quantity) {
-            return pairs[i].signal;
-        }
-    }
-    return -1;
-}
-
-status act_pin_value(explorer_model *model, const sweep_axis *axis, double value,
-                     const char *name, fault *f)
-{
-    parameters p = model->session.effective.parameters;
-    run_origin from;
-    session other;
-    TRY(sweep_axis_apply(axis, value, &p, f));
-    TRY(run_origin_take(&from, &model->session, f));
-
-    // the present run's changes, and the value from the start
-    status code = session_reopen(&other, &from, HUGE_VAL, f);
-    run_origin_finish(&from);
-    TRY(code);
-    session_seek(&other, 0);
-    code = session_change_from_start(&other, &p, axis->parameter, f);
-    if (code == STATUS_OK) {
-        code = run_list_pin(&model->pinned, &other, name, f);
-    }
-    session_finish(&other);
-    return code;
-}
-
 const char *act_full_path(const char *word, char *text, size_t size)
 {
     const char *values = word + strcspn(word, "=");
@@ -298,123 +253,6 @@ const char *act_full_path(const char *word, char *text, size_t size)
         snprintf(text, size, "%s%s", name, values);
     }
     return text;
-}
-
-// The limit that is nearest to the value the run has.
-static int nearest_limit(const explorer_model *model, const sweep_axis *axis,
-                         const solution *found)
-{
-    const double value =
-        parameter_get(&model->session.effective.parameters, axis->parameter);
-    int nearest = 0;
-    for (int i = 1; i < found->count && axis->element == 0; i++) {
-        const double here = fabs(found->limits[i].value - value);
-        if (here < fabs(found->limits[nearest].value - value)) {
-            nearest = i;
-        }
-    }
-    return nearest;
-}
-
-// Says that there is no limit in the range that was searched.
-static bool refuse_without_limit(explorer_input *input, const sweep_axis *axis,
-                                 const solve_condition *c, const solution *found)
-{
-    const double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
-    char text[MESSAGE_TEXT / 2];
-    snprintf(text, sizeof text,
-             "no limit of %s from %g to %g %s: the %s is as asked in %d runs, and not in "
-             "%d",
-             axis->name, low, high, sweep_axis_parameter(axis)->unit,
-             summary_table[c->quantity].label, found->holding, found->failing);
-    if (found->unknown > 0) {
-        return act_refuse(input, "%s; first of the others: %s", text, found->reason);
-    }
-    return act_refuse(input, "%s%s", text, found->reason);
-}
-
-// Says what was found: the limit that is pinned, and where others are; true if there is
-// one.
-static bool tell_limits(const explorer_model *model, explorer_input *input,
-                        const sweep_axis *axis, const solve_condition *c,
-                        const solution *found)
-{
-    if (found->count == 0) {
-        return refuse_without_limit(input, axis, c, found);
-    }
-
-    // the others
-    const int nearest = nearest_limit(model, axis, found);
-    char others[160] = "";
-    for (int i = 0; i < found->count; i++) {
-        if (i != nearest) {
-            const char *before = others[0] == '\0' ? "; limits also at " : ", ";
-            text_add(others, sizeof others, "%s%.5g", before, found->limits[i].value);
-        }
-    }
-
-    // the nearest, with what the quantity is there
-    const solve_limit *l = &found->limits[nearest];
-    const char *side = l->holds_below ? "up to" : "from";
-    const char *jump = l->jumps ? ", where it jumps" : "";
-    const char *unit = sweep_axis_parameter(axis)->unit, *blank = unit[0] ? " " : "";
-    return act_tell(input, "%s %s = %#.5g%s%s: %#.5g %s%s%s; that run is pinned", side,
-                    axis->name, l->value, blank, unit, l->reached,
-                    summary_table[c->quantity].unit, jump, others);
-}
-
-// Finds the limits of a parameter (PATH or PATH=A:B) for a condition, and pins the run at
-// the nearest.
-static status solve_and_pin(explorer_model *model, const char *parameter,
-                            const char *wanted, sweep_axis *axis,
-                            solve_condition *condition, solution *found, fault *f)
-{
-    const scenario *s = &model->session.effective;
-    TRY(solve_condition_read(wanted, condition, f));
-    TRY(solve_axis_read(axis, parameter, s, f));
-    TRY(solve(s, axis, condition, SOLVE_POINTS, SOLVE_THREADS, NULL, found, f));
-    if (found->count == 0) {
-        return STATUS_OK;
-    }
-
-    // the condition is drawn in the panes of its signal
-    model->limit = (solved_limit){signal_of_quantity(condition->quantity),
-                                  condition->bound, condition->quantity};
-
-    // the run at the limit
-    const double value = found->limits[nearest_limit(model, axis, found)].value;
-    char name[RUN_NAME];
-    snprintf(name, sizeof name, "%s %.5g", strchr(axis->name, '.') + 1, value);
-    return act_pin_value(model, axis, value, name, f);
-}
-
-bool act_solve(explorer_model *model, explorer_input *input, const char *argument)
-{
-    const char *condition_text = argument + strcspn(argument, " ");
-    if (*condition_text == '\0') {
-        return act_refuse(input, "solve takes a parameter and a condition, such as "
-                                 "motor.voltage peak_force_N<2");
-    }
-    if (!act_need_whole_run(model, input) ||
-        !act_need_short_runs(model, input, "solve", 2 * SOLVE_POINTS)) {
-        return false;
-    }
-
-    // a parameter may be given by the last part of its path
-    char word[LINE_TEXT], parameter[2 * LINE_TEXT];
-    snprintf(word, sizeof word, "%.*s", (int)(condition_text - argument), argument);
-    act_full_path(word, parameter, sizeof parameter);
-
-    // the limit, and the run there as the new baseline
-    static solution found;
-    sweep_axis axis = {0};
-    solve_condition condition;
-    const status code = solve_and_pin(model, parameter, condition_text, &axis, &condition,
-                                      &found, &input->fault);
-    const bool done = act_succeeded(input, code) &&
-                      tell_limits(model, input, &axis, &condition, &found);
-    sweep_axis_finish(&axis);
-    return done && act_apply_baseline(model, input);
 }
 
 // --- sweeps ----------------------------------------------------------------------------

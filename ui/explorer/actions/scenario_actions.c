@@ -87,6 +87,9 @@ bool act_open(explorer_model *model, explorer_view *view, explorer_input *input,
 bool act_stop(explorer_model *model, explorer_input *input)
 {
     session *s = &model->session;
+    if (s->computing == NULL && model->search != NULL) {
+        return act_end_search(model, input);
+    }
     if (s->computing == NULL) {
         return act_refuse(input, "nothing is being computed");
     }

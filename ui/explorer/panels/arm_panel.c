@@ -12,28 +12,12 @@ enum {
     LEAST_FRAME = 3,    // width and height of a frame that has anything in it [cells]
 };
 
-// An angle beyond which the whole circle is drawn [rad].
-#define FAR_OUT 0.8
-
 // Where a plan of the arm is drawn: cells of the screen, as dots or as pixels.
 typedef struct stage {
     canvas canvas;
     cairo_t *picture; // NULL: dots
     plan_view view;   // in either
 } stage;
-
-// Widens an extent by what the arm sweeps over in one row.
-static void extent_add(arm_extent *extent, const double *angles, const double *lengths,
-                       int links)
-{
-    double y = 0;
-    for (int i = 0; i < links; i++) {
-        y += lengths[i] * sin(angles[i]);
-        extent->most_angle = fmax(extent->most_angle, fabs(angles[i]));
-        extent->lowest = fmin(extent->lowest, y);
-        extent->highest = fmax(extent->highest, y);
-    }
-}
 
 // What the arm sweeps over in the whole run, remembered in *known.
 static void find_extent(const explorer_model *model, arm_extent *known)
@@ -62,80 +46,26 @@ static void find_extent(const explorer_model *model, arm_extent *known)
             first = known->rows;
         }
     } else {
-        known->lowest = known->highest = known->most_angle = 0;
+        known->over = (plan_extent){0};
     }
-
-    double lengths[PARAMETER_LINKS_MOST];
-    parameters_link_lengths(beam, lengths);
-    const size_t stride = (t->row_count - first) / samples + 1;
-    for (size_t r = first; r < t->row_count; r += stride) {
-        // the beam's angles are the last of a row
-        const double *end_of_row = t->angles + (r + 1) * (size_t)t->angle_count;
-        extent_add(known, end_of_row - beam->links, lengths, beam->links);
-    }
+    plan_extent_add(&known->over, t, beam, first, samples);
     known->run = run;
     known->rows = t->row_count;
     known->whole = !grows;
 }
 
-// The largest of some round factors that is not above a bound, at least 1.
-static double round_magnification(double most)
-{
-    static const double factors[] = {1.5, 2, 3, 4, 5, 10, 20};
-    double chosen = 1;
-    for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
-        if (factors[i] <= most) {
-            chosen = factors[i];
-        }
-    }
-    return chosen;
-}
-
-// What shows all that the arm sweeps over on a stage of this size [dots or pixels].
-static plan_view whole_view(const explorer_model *model, const arm_extent *extent,
-                            double width, double height)
-{
-    const parameters *p = &model->session.effective.parameters;
-    const double length = p->arm.length;
-    plan_view v = {.magnified = 1, .width = width, .height = height};
-
-    // far out: the whole circle, undistorted
-    if (extent->most_angle > FAR_OUT) {
-        v.scale = fmin(width, height) / (2.3 * length);
-        v.left = -0.5 * width / v.scale;
-        v.bottom = -0.5 * height / v.scale;
-        return v;
-    }
-
-    // the wall belongs to it
-    double low = extent->lowest, high = extent->highest;
-    if (p->wall.kind != WALL_NONE) {
-        low = fmin(low, length * sin(p->wall.angle));
-        high = fmax(high, length * sin(p->wall.angle));
-    }
-
-    // the width is the arm's; heights are magnified as far as there is room
-    v.scale = width / (1.25 * length);
-    v.left = -0.1 * length;
-    v.magnified = round_magnification(height * 0.62 / fmax(v.scale * (high - low), 1e-9));
-
-    // the force's arrow comes from above, so more of the room is left there
-    const double spare = height / (v.scale * v.magnified) - (high - low);
-    v.bottom = low - 0.3 * spare;
-    return v;
-}
-
 int arm_rows(const explorer_model *model, layout *lay, screen_size room)
 {
     enum { LEAST = 14, AROUND = 6 }; // rows of all, and around what the arm sweeps over
-    const arm_extent *extent = &lay->extent;
+    const plan_extent *extent = &lay->extent.over;
     find_extent(model, &lay->extent);
-    if (extent->most_angle > FAR_OUT) {
+    if (plan_is_circle(extent)) {
         return room.height > LEAST ? room.height : LEAST;
     }
 
     // what is drawn in true proportion takes its height, and the force an arrow
-    const plan_view v = whole_view(model, extent, 2.0 * room.width, 4.0 * room.height);
+    const plan_view v = plan_whole(extent, &model->session.effective.parameters,
+                                   2.0 * room.width, 4.0 * room.height);
     const int spread = (int)((extent->highest - extent->lowest) * v.scale / 4);
     return AROUND + spread > LEAST ? AROUND + spread : LEAST;
 }
@@ -448,7 +378,8 @@ static void draw_arm(const explorer_model *model, const explorer_view *view, lay
     // the title says how it is drawn
     char title[LINE_TEXT] = "arm";
     stage g = plan_stage(s, a);
-    g.view = whole_view(model, &lay->extent, g.view.width, g.view.height);
+    g.view = plan_whole(&lay->extent.over, &model->session.effective.parameters,
+                        g.view.width, g.view.height);
     if (g.view.magnified != 1) {
         text_add(title, sizeof title, ", drawn %g times as high", g.view.magnified);
     }

@@ -211,6 +211,11 @@ static bar status_bar(const explorer_model *model, const explorer_view *view)
     if (model->reading != NULL) {
         bar_add(&b, 2, "reading data");
     }
+    if (model->search != NULL) {
+        char progress[PROGRESS_TEXT];
+        act_write_progress(model->search, progress);
+        bar_add(&b, 2, "%s", progress);
+    }
     if (e->run.summary.inaccurate) {
         bar_add(&b, 1, "inaccurate");
     }

@@ -2,6 +2,7 @@
 // keys if it is a page. view.h lists them all.
 #pragma once
 
+#include "render/scene/plan_extent.h"
 #include "src/predict/predictors.h"
 #include "src/session/account.h"
 #include "ui/explorer/actions/actions.h"
@@ -92,12 +93,11 @@ typedef struct hit_area {
 
 // The region that the arm covers in a run.
 typedef struct arm_extent {
-    unsigned opened;        // of the state
-    unsigned long run;      // 0: nothing is known
-    size_t rows;            // looked at
-    bool whole;             // of a complete run
-    double lowest, highest; // of all points of the arm over the run [m]
-    double most_angle;      // [rad]
+    unsigned opened;   // of the state
+    unsigned long run; // 0: nothing is known
+    size_t rows;       // looked at
+    bool whole;        // of a complete run
+    plan_extent over;  // the run
 } arm_extent;
 
 // The linearised predictor's answer for a touch at a row.

@@ -150,14 +150,20 @@ static int list_runs(const explorer_model *model, result_run runs[MOST_RUNS])
     return count;
 }
 
-// How far a quantity is from the reference's; "" where that is nothing or unknown.
+// How far a quantity is from the reference's, with as many digits as a blank behind it
+// leaves room for; "" where that is nothing or unknown.
 static void write_change(double value, double reference, char text[24])
 {
     const double change = value - reference;
     const double rounding = 1e-9 + 1e-6 * fmax(fabs(value), fabs(reference));
     text[0] = '\0';
-    if (fabs(change) > rounding) {
-        snprintf(text, 24, "%+.3g", change);
+    if (!(fabs(change) > rounding)) {
+        return;
+    }
+    for (int digits = 3; digits > 0; digits--) {
+        if (snprintf(text, 24, "%+.*g", digits, change) < CHANGE) {
+            return;
+        }
     }
 }
 

@@ -175,7 +175,7 @@ static void draw_map_cell(screen *s, area a, double share, bool selected)
     }
 }
 
-// From where to where both axes go.
+// From where to where both parameters go.
 static void draw_map_axes(screen *s, area line, const lab_sweep *sweep)
 {
     const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
@@ -183,8 +183,9 @@ static void draw_map_axes(screen *s, area line, const lab_sweep *sweep)
         char from[SWEEP_VALUE_TEXT], to[SWEEP_VALUE_TEXT];
         format_axis_value(axes[i], sweep_axis_value(axes[i], 0), from);
         format_axis_value(axes[i], sweep_axis_value(axes[i], axes[i]->count - 1), to);
-        const int used =
-            area_print(s, line, INK_DIM, "%s%s to %s", i == 0 ? "" : ", up ", from, to);
+        const char *name = strrchr(sweep_axis_parameter(axes[i])->path, '.') + 1;
+        const int used = area_print(s, line, INK_DIM, "%s%s %s to %s",
+                                    i == 0 ? "" : ", up ", name, from, to);
         line = area_right(line, used);
     }
 }

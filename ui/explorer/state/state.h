@@ -83,6 +83,7 @@ typedef struct screen_size {
 
 // The model: the runs, what was done to them, and what follows from them.
 typedef struct data_reading data_reading; // of a file that is being read
+typedef struct run_search run_search;     // a limit or a fit that is searched for
 
 typedef struct explorer_model {
     session session; // the present run, its changes and the cursor
@@ -96,6 +97,8 @@ typedef struct explorer_model {
     int note_count;
     lesson_progress lesson;
     char last_law[LINE_TEXT]; // the law that was switched off last, "" for none
+
+    run_search *search; // that goes on, NULL: none
 
     // measured data
     data_reading *reading;   // of the next ones, NULL: none
