@@ -114,6 +114,25 @@ TEST(test_runs_and_scenarios_are_clicked)
     assert_string_equal(ex.model.session.base.name, "thesis/fig-3-4");
 }
 
+// A click may come before the screen is drawn anew: what it was on may be gone.
+TEST(test_a_click_on_what_is_gone_does_nothing)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, "b:set motor.voltage 2<Enter>");
+    const hit_area run = part_on_screen(&ex, PANEL_RESULTS, PART_LINES);
+    press(&ex, "B");
+    explorer_point(&ex, (pointer_event){POINTER_PRESS, run.area.x, run.area.y, 0, 0});
+    explorer_point(&ex, (pointer_event){POINTER_RELEASE, run.area.x, run.area.y, 0, 0});
+    assert_int_equal(ex.model.pinned.count, 0);
+    press(&ex, ":sweep motor.voltage=1:2:3 arm.k2=4:6:2<Enter>");
+    const hit_area map = part_on_screen(&ex, PANEL_SWEEP, PART_CELLS);
+    for (EACH_TEXT(c, ":sweep arm.k2=4:6:2<Enter>", ":sweep off<Enter>")) {
+        press(&ex, *c);
+        explorer_point(&ex, (pointer_event){POINTER_PRESS, map.area.x, map.area.y, 0, 0});
+        assert_int_equal(ex.model.sweep.selected, 0);
+    }
+}
+
 TEST(test_the_wheel_scrolls_pages_and_panels)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");

@@ -419,7 +419,7 @@ static void write_modes(const shown_recipe *r)
 {
     const law_modes *modes = &r->model->modes;
     const char *before = "  - {signals: [controller_mode], from: [run 1], weight: 0.6, "
-                         "range: [-0.5, ";
+                         "label: Mode of the law, range: [-0.5, ";
     if (!model_has_law(r->model) || modes->count == 0) {
         return;
     }

@@ -353,13 +353,14 @@ static void draw_results(const explorer_model *model, const explorer_view *view,
     }
 }
 
-// A click on a pinned run hides its curves or shows them.
+// A click on a pinned run hides its curves or shows them. The run may be gone since the
+// strip was drawn.
 static bool point_at_results(explorer_model *model, explorer_view *view,
                              explorer_input *input, const panel_gesture *g)
 {
     (void)view;
     (void)input;
-    if (g->event.kind != POINTER_PRESS) {
+    if (g->event.kind != POINTER_PRESS || g->hit.index >= model->pinned.count) {
         return false;
     }
     act_hide_run(model, g->hit.index);

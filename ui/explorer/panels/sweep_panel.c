@@ -310,11 +310,15 @@ static void draw_sweep(const explorer_model *model, const explorer_view *view,
     }
 }
 
-// The run whose cell in the map was pressed; `index` of the part is a cell's height.
+// The run whose cell in the map was pressed; `index` of the part is a cell's height. -1
+// where another sweep, or none, has taken its place since it was drawn.
 static int run_in_map(const lab_sweep *sweep, const panel_gesture *g)
 {
     const area a = g->hit.area;
     const int across = (int)sweep->axis.count, lowest = a.y + a.height - 1;
+    if (!lab_sweep_is_map(sweep) || a.width < across) {
+        return -1;
+    }
     const int column = (g->event.x - a.x) / (a.width / across);
     const int row = (lowest - g->event.y) / g->hit.index;
     return row * across + column;
