@@ -82,7 +82,14 @@ static status search_and_judge(identification *id, double *jacobian, fault *f)
         leave_unjudged(id, least);
         return code;
     }
-    return identify_judge(id, jacobian, f);
+    code = identify_judge(id, jacobian, f);
+    if (code == STATUS_OK && id->count > 0) {
+        code = identify_profile(id, x, jacobian, f);
+    }
+    if (code == STATUS_STOPPED) {
+        leave_unjudged(id, least);
+    }
+    return code;
 }
 
 // Gives every channel the noise that the fit leaves of it in all traces.

@@ -277,6 +277,15 @@ status identify_evaluate(identification *id, const double *x, int sets, const in
 // The Jacobian of the residuals by the unknowns at x, jacobian[unknowns * residuals],
 // column by column, by central differences. Fails as identify_evaluate does.
 status identify_jacobian(identification *id, const double *x, double *jacobian, fault *f);
+// Minimises the sum of squares over all unknowns but one, `held`, from x[unknowns] on;
+// *squares receives it. Fails as identify_evaluate does.
+status identify_minimise_held(identification *id, int held, double *x, double *squares,
+                              fault *f);
+// Widens the intervals of a fit that was judged where the sum of squares is no
+// paraboloid, at the result x[unknowns] with its Jacobian. Fails as identify_evaluate
+// does.
+status identify_profile(identification *id, const double *x, const double *jacobian,
+                        fault *f);
 // Searches the unknowns x[unknowns] with the least sum of squares, *least: NaN if nothing
 // was tried. Fails as identify_fit does; x are then the best so far.
 status identify_search(identification *id, double *x, double *least, fault *f);

@@ -52,7 +52,8 @@ typedef struct search {
     double least;                   // its sum of squares; NaN before the first
     double *residual, *jacobian;    // room for one set of unknowns
     double *sets, *set_residuals;   // room for those that are screened
-    status code;                    // of an evaluation, for MINPACK's caller
+    int held;    // unknown that a minimisation does not move; -1: it moves all
+    status code; // of an evaluation, for MINPACK's caller
     fault *f;
 } search;
 
@@ -86,11 +87,15 @@ static int evaluate_for_minpack(void *context, int m, int n, const double *x,
 {
     search *s = context;
     const bool wants_residuals = flag == 1, judge = false;
-    (void)m, (void)n, (void)rows;
+    (void)m, (void)n;
     if (wants_residuals) {
         s->code = identify_evaluate(s->id, x, 1, NULL, judge, residual, NULL, s->f);
     } else {
         s->code = identify_jacobian(s->id, x, jacobian, s->f);
+    }
+    if (!wants_residuals && s->held >= 0) {
+        memset(jacobian + (size_t)s->held * (size_t)rows, 0,
+               (size_t)rows * sizeof *jacobian);
     }
     if (s->code == STATUS_OK && wants_residuals) {
         keep_least(s, x, identify_dot(residual, residual, s->id->residuals));
@@ -368,6 +373,20 @@ static status search_from_starts(search *s)
     return minimise(s, TOLERANCE_BEST, x, &squares);
 }
 
+status identify_minimise_held(identification *id, int held, double *x, double *squares,
+                              fault *f)
+{
+    const size_t m = id->residuals, n = (size_t)id->unknowns;
+    SCOPED(free_kept) double *room = calloc(m + m * n, sizeof *room);
+    if (room == NULL) {
+        return fault_no_memory(f);
+    }
+    search s = {.id = id, .held = held, .least = 0, .f = f};
+    s.residual = room;
+    s.jacobian = room + m;
+    return minimise(&s, TOLERANCE_WHOLE, x, squares);
+}
+
 bool identify_settled(const identification *id)
 {
     return id->starts <= SCENARIOS_STARTS || id->reached >= IDENTIFY_CONFIRMED;
@@ -381,7 +400,7 @@ status identify_search(identification *id, double *x, double *least, fault *f)
     if (room == NULL) {
         return fault_no_memory(f);
     }
-    search s = {.id = id, .least = (double)NAN, .f = f};
+    search s = {.id = id, .held = -1, .least = (double)NAN, .f = f};
     s.sets = room;
     s.set_residuals = s.sets + IDENTIFY_SCREENED * n;
     s.residual = s.set_residuals + IDENTIFY_SCREENED * m;
