@@ -252,8 +252,13 @@ TEST(runs_of_the_printed_model)
 // Where a run of two links ends in a batch, the next one takes over what it had.
 TEST(a_run_more_of_a_batch_asks_for_nothing)
 {
-    static const char *const arms[] = {"", "arm.damping_ratio=0.01",
-                                       "wall.restitution=0.5", "arm.hub_joint=spring"};
+    static const char *const arms[] = {"",
+                                       "arm.damping_ratio=0.01",
+                                       "wall.restitution=0.5",
+                                       "arm.hub_joint=spring",
+                                       "arm.links=3",
+                                       "arm.links=1 wall.contact=hunt-crossley",
+                                       "arm.links=4 arm.modal_ratios=0.01,0.02"};
     for (size_t i = 0; i < sizeof arms / sizeof *arms; i++) {
         scenario s;
         assert_int_equal(make_scenario(&s, arms[i]), STATUS_OK);

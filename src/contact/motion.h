@@ -147,6 +147,7 @@ struct motion {
     motion_steps step; // the last one and the coming one
 
     void *block, *engine_block; // where all of that lies
+    size_t engine_length;       // of the latter [bytes]
 
     motion_record record; // that a copy of the state continues with
     double failure_time;  // instant from which a step failed [s]

@@ -92,33 +92,62 @@ static void lay_out_motion(const arm *a, motion *m, layout *l)
     }
 }
 
-// Allocates a zeroed block for what the function lay_out lays out in it, which begins at
-// the block's first whole cache line. False if out of memory. With calloc the pages of a
-// large block take no memory until they are touched, which with many links most never
-// are.
-static bool open_block(const arm *a, motion *m,
-                       void (*lay_out)(const arm *a, motion *m, layout *l), void **block)
+// Lays out what belongs to a block from its first whole cache line on.
+static void lay_out_in(const arm *a, motion *m,
+                       void (*lay_out)(const arm *a, motion *m, layout *l), void *block)
+{
+    const size_t beyond = (uintptr_t)block % CACHE_LINE;
+    layout l = {.block = (char *)block + (CACHE_LINE - beyond) % CACHE_LINE};
+    lay_out(a, m, &l);
+}
+
+// Allocates a zeroed block for what the function lay_out lays out in it; its length, or 0
+// if out of memory. With calloc the pages of a large block take no memory until they are
+// touched, which with many links most never are.
+static size_t open_block(const arm *a, motion *m,
+                         void (*lay_out)(const arm *a, motion *m, layout *l),
+                         void **block)
 {
     layout l = {0};
     lay_out(a, m, &l);
     *block = calloc(1, l.length + CACHE_LINE - 1);
     if (*block == NULL) {
-        return false;
+        return 0;
     }
-    const size_t beyond = (uintptr_t)*block % CACHE_LINE;
-    l = (layout){.block = (char *)*block + (CACHE_LINE - beyond) % CACHE_LINE};
-    lay_out(a, m, &l);
-    return true;
+    lay_out_in(a, m, lay_out, *block);
+    return l.length;
 }
 
 // The engine's storage, ready; false, with nothing allocated, if out of memory.
 static bool open_engine(const arm *a, motion *m)
 {
-    const bool opened = open_block(a, m, lay_out_engine, &m->engine_block);
-    if (opened) {
+    m->engine_length = open_block(a, m, lay_out_engine, &m->engine_block);
+    if (m->engine_length > 0) {
         m->engine->init(a, m->memory);
     }
-    return opened;
+    return m->engine_length > 0;
+}
+
+// Whether the storage of a finished motion is enough for the next one, of as many bodies.
+static bool storage_fits(const arm *a, const motion *m, const motion *next)
+{
+    layout l = {0};
+    motion sized = *next;
+    lay_out_engine(a, &sized, &l);
+    return next->engine == m->engine && next->most_size <= m->most_size &&
+           next->wall_moves == m->wall_moves && l.length <= m->engine_length;
+}
+
+// Makes the storage ready for a run with the same engine. One that keeps its steps in the
+// state finds as little of the run before as in new storage.
+static void clear_engine(const arm *a, motion *m)
+{
+    if (m->engine->kept > 0) {
+        memset(m->trial, 0, (size_t)m->most_size * sizeof *m->trial);
+        memset(m->memory, 0, m->engine->init(a, NULL));
+    }
+    lay_out_in(a, m, lay_out_engine, m->engine_block);
+    m->engine->init(a, m->memory);
 }
 
 // How many numbers a state of this arm has with an engine.
@@ -157,7 +186,7 @@ motion *motion_create_by(const arm *a, const method_parameters *method,
     m->most_size = most_size(a, m);
 
     // its storage: all of it or none
-    if (!open_block(a, m, lay_out_motion, &m->block) || !open_engine(a, m)) {
+    if (open_block(a, m, lay_out_motion, &m->block) == 0 || !open_engine(a, m)) {
         motion_destroy(m);
         return NULL;
     }
@@ -172,7 +201,7 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
         return motion_create(a, method);
     }
 
-    // storage of the same sizes can be reused as it is
+    // storage that is large enough can be used again
     motion next = *m;
     next.nominal_step = method->step;
     next.chosen = false;
@@ -180,13 +209,12 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
     next.step = (motion_steps){.history_invalid = true};
     choose_engine(a, &next, method, NULL);
     next.most_size = most_size(a, &next);
-    if (next.engine != m->engine || next.engine->kept > 0 ||
-        next.most_size > m->most_size || next.wall_moves != m->wall_moves) {
+    if (!storage_fits(a, m, &next)) {
         motion_destroy(m);
         return motion_create(a, method);
     }
     *m = next;
-    m->engine->init(a, m->memory);
+    clear_engine(a, m);
     return m;
 }
 
