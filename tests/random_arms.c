@@ -14,6 +14,8 @@
 //     by=explicit   the reference: explicit; implicit, for arms of 24 links at most
 //                   that are not tilted and whose wall does not move; fine, the same
 //                   engine at a hundredth of its tolerance; or a value of method.engine
+//     contacts=10   contacts after which the runs end: 2 compares them up to the first
+//                   contact again
 //     gate=a        limits: a 1e-9 s, 1e-7 of the momentum, 1e-6 of the peak;
 //                   b 1e-11 s, 1e-9 and 1e-8
 //     damping=1     the largest damping ratio
@@ -55,15 +57,18 @@
 #define LEAST_SHARE   1e-3  // of the arm's own momentum, of which shares are taken
 #define IMPLICIT_MOST 24    // links
 #define LEAST_FORCE   1e-3  // of which shares are taken: 1e-6 of it counts as tension [N]
+#define ROUNDED_FORCE 1e-12 // [N]
 #define LEAST_GAP     2e-12 // what the engines take for a touch, twice [m]
-#define LEAST_WORK    1e-9  // the same of what was put in [J]
-#define PEAK_TIME     1e-5  // what the instant of the largest force may be off by [s]
+// of what was put in: half of that with which a run is inaccurate
+#define OPEN_LEDGER 5e-7
+#define LEAST_WORK  1e-9 // the same of what was put in [J]
+#define PEAK_TIME   1e-5 // what the instant of the largest force may be off by [s]
 
 enum { LONGEST_LIST = 20 };
 
 // What the command line asks for; its names are explained above.
 typedef struct options {
-    int count, first, least, most;
+    int count, first, least, most, contacts;
     char engine[32], by[32];
     bool strict, cost, whole, moves, tight; // strict: gate=b; whole: place=whole
     double damping, tolerance;
@@ -295,8 +300,8 @@ static bool resolve_arm(random_arm *r)
 }
 
 // A run by the method's own engine, with what `setting` says of it.
-static chain_outcome by_setting(const random_arm *r, const parameters *p,
-                                const char *path, const char *value)
+static chain_outcome by_setting(const random_arm *r, const options *o,
+                                const parameters *p, const char *path, const char *value)
 {
     parameters with = *p;
     fault f;
@@ -307,7 +312,7 @@ static chain_outcome by_setting(const random_arm *r, const parameters *p,
         exit(2);
     }
     return chain_outcome_of(&(chain_start){&with, r->angle, r->velocity, DURATION,
-                                           AFTER_CONTACT, NULL, OUTCOME_CONTACTS});
+                                           AFTER_CONTACT, NULL, o->contacts});
 }
 
 // What is taken for right, coarser or finer, of an arm heavier by a share.
@@ -323,7 +328,7 @@ static chain_outcome by_reference(const random_arm *r, const options *o, double 
                                DURATION,
                                AFTER_CONTACT,
                                formula,
-                               OUTCOME_CONTACTS};
+                               o->contacts};
     if (strcmp(o->by, "explicit") == 0) {
         arm a = arm_of(&p);
         p.method.step = fmin(1e-5, SUBSTEPS / a.fastest_rate) / finer;
@@ -337,10 +342,10 @@ static chain_outcome by_reference(const random_arm *r, const options *o, double 
         parameters with = p;
         fault f;
         parameter_set_text(&with, parameter_find("method.engine"), o->engine, &f);
-        return by_setting(r, &with, "method.tolerance",
+        return by_setting(r, o, &with, "method.tolerance",
                           formatted("%.17g", parameter_get(&p, tolerance) / 100 / finer));
     }
-    return by_setting(r, &p, "method.engine", o->by);
+    return by_setting(r, o, &p, "method.engine", o->by);
 }
 
 // How fast the explicit formula must follow arm, motor and wall [1/s].
@@ -429,11 +434,12 @@ static distances distances_of(const random_arm *r, const chain_outcome *a,
         d.momentum /= fmax(fabs(a->momentum[samples - 1]), own);
     }
 
-    // the largest force and its instant; a wall that swings makes several equal ones
+    // the largest force and, of one that is more than rounding, its instant; a wall that
+    // swings makes several equal ones
     if (a->peak > 0) {
         d.peak = fabs(a->peak - fmax(b->peak, 0)) / fmax(a->peak, LEAST_FORCE);
     }
-    if (r->parameters.wall.motion == MOTION_NONE) {
+    if (r->parameters.wall.motion == MOTION_NONE && a->peak > ROUNDED_FORCE) {
         d.peak_time = fabs(a->peak_time - b->peak_time);
     }
 
@@ -475,7 +481,8 @@ static bool take_option(options *o, const char *text)
     } numbers[] = {{"count", &o->count},
                    {"first", &o->first},
                    {"least", &o->least},
-                   {"most", &o->most}};
+                   {"most", &o->most},
+                   {"contacts", &o->contacts}};
     for (EACH(c, numbers)) {
         if (strcmp(name, c->name) == 0) {
             *c->number = atoi(value);
@@ -572,7 +579,8 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
 
     // both outcomes, and what they cost
     double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-    const chain_outcome mine = by_setting(r, &r->parameters, "method.engine", o->engine);
+    const chain_outcome mine =
+        by_setting(r, o, &r->parameters, "method.engine", o->engine);
     const double cost = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
     before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     const chain_outcome truth = by_reference(r, o, 0, 1);
@@ -586,7 +594,7 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
     // of these arms
     char what[300];
     t->compared++;
-    const double least = o->tolerance > 0 ? 1e-10 : o->strict ? 1e-9 : 1e-7;
+    const double least = o->tolerance > 0 ? 1e-10 : o->strict ? 1e-9 : OPEN_LEDGER;
     const bool closes = mine.residual <= least * fmax(mine.put_in, LEAST_WORK);
     if (mine.status != STATUS_OK || mine.residual > r->parameters.method.residual_bound *
                                                         fmax(mine.put_in, LEAST_WORK)) {
@@ -656,7 +664,7 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
 
 int main(int argc, char **argv)
 {
-    options o = {200, 0, 1, 8, "auto", "explicit", .damping = 1};
+    options o = {200, 0, 1, 8, OUTCOME_CONTACTS, "auto", "explicit", .damping = 1};
     for (int i = 1; i < argc; i++) {
         if (!take_option(&o, argv[i])) {
             fprintf(stderr, "random_arms: %s is no option\n", argv[i]);

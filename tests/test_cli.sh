@@ -641,6 +641,13 @@ says out "first contact"
 grep -q '"order": 2' converge.json || grep -q '"order": 1.9' converge.json ||
     fail "converge finds no second order"
 [ -s converge.svg ] || fail "converge draws nothing"
+expect 0 converge corrected/three-links --json converge.json --plot converge.svg
+says out "digits that the first and the last column share"
+grep -q '"tolerance": \[1e-08, 1e-09, 1e-10\]' converge.json || fail "converge leaves the tolerance as it is"
+grep -q '"digits": [0-9]' converge.json || fail "converge counts no digits"
+grep -q 'at three tolerances' converge.svg || fail "converge draws no tolerances"
+expect 2 converge corrected/three-links --set method.tolerance=1e-12
+says err "no hundredth to compare with"
 
 # --- parameters from recorded traces
 expect 0 run hit.yaml --set control.law=open-loop --set control.rate=1000 --set method.step=0.0005 --set arm.hub_inertia=0.006 \

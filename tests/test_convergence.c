@@ -48,8 +48,8 @@ TEST(the_implicit_methods_are_of_second_order_through_impacts)
 {
     for (EACH_TEXT(c, "method.name=newmark", "method.name=generalized-alpha")) {
         convergence_panel panel = panel_of(given("%s", *c));
-        check_close(panel.step[0], 1e-3, 0);
-        check_close(panel.step[2], 2.5e-4, 0);
+        check_close(panel.setting[0], 1e-3, 0);
+        check_close(panel.setting[2], 2.5e-4, 0);
         for (EACH_TEXT(key, "first_contact_s", "contact_impulse_Ns", "first_pulse_peak_N",
                        "steady_force_N", "motor_work_J")) {
             check_close(row_of(&panel, *key)->order, 2, 0.15);
@@ -66,6 +66,55 @@ TEST(the_event_method_needs_no_shorter_step)
         check_close(row_of(&panel, "first_contact_s")->value[i],
                     row_of(&panel, "first_contact_s")->value[2], 1e-10);
     }
+}
+
+TEST(the_digits_that_two_numbers_share_are_counted)
+{
+    for (int n = 1; n <= 12; n++) {
+        check_close(shared_digits(3, 3 * (1 - pow(10, -n))), n, 1e-2);
+        check_close(shared_digits(-3e-9 * (1 - pow(10, -n)), -3e-9), n, 1e-2);
+    }
+    check_close(shared_digits(0.1, 0.1), 15, 0);
+    check_close(shared_digits(0, 0), 15, 0);
+    check_close(shared_digits(1, -1), 0, 0);
+    check_close(shared_digits(0, 1), 0, 0);
+    assert_true(isnan(shared_digits(1, (double)NAN)));
+}
+
+// What the stiff engine integrates is refined by its tolerance: the first and the last
+// run share the more digits the smaller it is. Of the first engine the step alone
+// differs.
+TEST(the_stiff_engine_is_refined_by_its_tolerance)
+{
+    double before = 0;
+    for (EACH_TEXT(tolerance, "1e-4", "1e-6", "1e-8", "1e-10")) {
+        const convergence_panel panel =
+            panel_of(given("arm.links=3 method.tolerance=%s", *tolerance));
+        assert_true(panel.of_tolerance);
+        check_relative(panel.setting[2], 0.01 * panel.setting[0], 1e-15);
+        const convergence_row *contact = row_of(&panel, "first_contact_s");
+        assert_true(contact->digits > before);
+        assert_true(isnan(contact->order));
+        before = contact->digits;
+    }
+    assert_true(before > 11);
+    const convergence_panel pair = panel_of(given("arm.links=2"));
+    assert_false(pair.of_tolerance);
+    assert_true(isnan(row_of(&pair, "first_contact_s")->digits));
+}
+
+// The least tolerance has no hundredth.
+TEST(a_tolerance_without_a_hundredth_is_refused)
+{
+    const scenario s = {.name = (char *)"test",
+                        .parameters =
+                            parameters_with("arm.links=3 method.tolerance=5e-12")};
+    convergence_panel panel;
+    fault f = {0};
+    assert_int_equal(convergence_compute(&s, NULL, NULL, &panel, &f),
+                     STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "expected 1e-11 at least"));
+    assert_int_equal(panel.done, 0);
 }
 
 // Before and after an event are two rows of one instant, which belong side by side: the

@@ -323,6 +323,7 @@ static run_result run_of(const char *wall, double from, double time, double to,
                          status expected)
 {
     const char *text = formatted("wall: {%s, angle: %.17g}\nrun: {duration: 0.6}\n"
+                                 "method: {tolerance: 1e-10}\n"
                                  "script:\n  - {at: %.17g, set: {wall.angle: %g}}\n",
                                  wall, from, time, to);
     KEPT_SCENARIO(s) = good(text);

@@ -150,7 +150,7 @@ TEST(a_run_that_could_not_end_says_so)
 }
 
 // Arms with decays, of a light hub, a wall's damper or a current, that are over at once
-// and would shorten the strides of a formula that is not stiff.
+// and would shorten the strides of a formula that is not stiff; at the default tolerance.
 TEST(decays_do_not_shorten_strides)
 {
     static const char *const arms[][7] = {
@@ -163,6 +163,7 @@ TEST(decays_do_not_shorten_strides)
     };
     for (EACH(c, arms)) {
         scenario s = {.parameters = fixture_parameters(*c)};
+        s.parameters.method.tolerance = fresh(ARM_CORRECTED).method.tolerance;
         KEPT_RUN(r) = run_done(&s, false);
         assert_true(r.summary.steps < 2000);
         check_below(r.summary.energy_residual_J, 1e-7 * r.summary.motor_work_J);

@@ -1,10 +1,12 @@
 #include "src/study/convergence.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 #include "src/study/bench.h"
 #include "src/run/run.h"
+#include "src/scenario/effect.h"
 #include "src/base/plain_math.h"
 
 #define ROUNDING       1e-13 // differences below this share of a value tell nothing
@@ -25,6 +27,18 @@ double observed_order(double coarse, double middle, double fine)
     return (double)NAN;
 }
 
+double shared_digits(double a, double b)
+{
+    const double apart = fabs(a - b), larger = fmax(fabs(a), fabs(b));
+    if (isnan(apart)) {
+        return (double)NAN;
+    }
+    if (apart <= larger * DBL_EPSILON) {
+        return DBL_DIG;
+    }
+    return fmin(fmax(0, plain_log(larger / apart) / M_LN10), DBL_DIG);
+}
+
 static const char *const panel_keys[] = {
     "first_contact_s",    "contact_impulse_Ns",
     "first_pulse_peak_N", "first_pulse_time_to_peak_s",
@@ -42,8 +56,8 @@ typedef struct one_run {
     fault *fault;
 } one_run;
 
-// Runs r->scenario and keeps its summary, or all of it; a failure names the step.
-static status run_with_step(void *context)
+// Runs r->scenario and keeps its summary, or all of it.
+static status run_once(void *context)
 {
     one_run *r = context;
     run_result run;
@@ -54,6 +68,14 @@ static status run_with_step(void *context)
     } else {
         run_finish(&run);
     }
+    return code;
+}
+
+// The same at a step; a failure names it.
+static status run_with_step(void *context)
+{
+    one_run *r = context;
+    const status code = run_once(r);
     if (code == STATUS_OK) {
         return code;
     }
@@ -61,24 +83,67 @@ static status run_with_step(void *context)
                         r->scenario.parameters.method.step, r->summary.message);
 }
 
+// The same at a tolerance.
+static status run_with_tolerance(one_run *r)
+{
+    const status code = run_once(r);
+    if (code == STATUS_OK) {
+        return code;
+    }
+    return fault_set_at(r->fault, code, r->summary.path, "with a tolerance of %g: %s",
+                        r->scenario.parameters.method.tolerance, r->summary.message);
+}
+
+// Chooses what the panel varies, and its values. Fails where the tolerance has no
+// hundredth.
+static status choose_settings(const scenario *s, convergence_panel *panel, fault *f)
+{
+    const int path = PARAMETER_INDEX(method.tolerance);
+    const method_parameters *method = &s->parameters.method;
+    panel->of_tolerance = effect_none(s, path) == NULL;
+    if (!panel->of_tolerance) {
+        for (int i = 0; i < PANEL_STEPS; i++) {
+            panel->setting[i] = ldexp(method->step, -i);
+        }
+        return STATUS_OK;
+    }
+
+    // tenths, down to the least that there is
+    double share = 1;
+    for (int i = 0; i < PANEL_STEPS; i++) {
+        panel->setting[i] = method->tolerance / share;
+        share *= 10;
+    }
+    const double least = parameter_table[path].minimum;
+    if (panel->setting[PANEL_STEPS - 1] < least * (1 - ROUNDING)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "method.tolerance = %g has no hundredth to compare with, "
+                         "expected %g at least",
+                         method->tolerance, 100 * least);
+    }
+    return STATUS_OK;
+}
+
 status convergence_compute(const scenario *s, run_monitor *monitor, run_result *kept,
                            convergence_panel *panel, fault *f)
 {
     summary results[PANEL_STEPS];
-    status code = STATUS_OK;
     one_run r = {*s, {.keep_trace = kept != NULL, .monitor = monitor}, .fault = f};
-    panel->done = 0;
+    panel->done = panel->row_count = 0;
+    status code = choose_settings(s, panel, f);
 
-    // three runs, each with half the step of the one before
+    // three runs, each with half the step or a tenth of the tolerance of the one before
     for (int i = 0; i < PANEL_STEPS; i++) {
-        r.scenario.parameters.method.step = panel->step[i] =
-            ldexp(s->parameters.method.step, -i);
         if (kept != NULL) {
             r.kept = &kept[i];
         } else {
             r.kept = NULL;
         }
-        if (code == STATUS_OK) {
+        if (code == STATUS_OK && panel->of_tolerance) {
+            r.scenario.parameters.method.tolerance = panel->setting[i];
+            code = run_with_tolerance(&r);
+        } else if (code == STATUS_OK) {
+            r.scenario.parameters.method.step = panel->setting[i];
             code = run_with_step(&r);
         }
         if (code == STATUS_OK) {
@@ -87,7 +152,7 @@ status convergence_compute(const scenario *s, run_monitor *monitor, run_result *
         }
     }
 
-    // and the orders that their results show
+    // and the orders or digits that their results show
     panel->row_count = PANEL_KEYS;
     for (int k = 0; k < PANEL_KEYS; k++) {
         convergence_row *row = &panel->rows[k];
@@ -99,7 +164,12 @@ status convergence_compute(const scenario *s, run_monitor *monitor, run_result *
                 row->value[i] = (double)NAN;
             }
         }
-        row->order = observed_order(row->value[0], row->value[1], row->value[2]);
+        row->order = row->digits = (double)NAN;
+        if (panel->of_tolerance) {
+            row->digits = shared_digits(row->value[0], row->value[PANEL_STEPS - 1]);
+        } else {
+            row->order = observed_order(row->value[0], row->value[1], row->value[2]);
+        }
     }
     return code;
 }

@@ -1,5 +1,5 @@
-// How results depend on the time step: the convergence panel of a scenario, and error
-// against cost of the methods of time integration.
+// How results depend on the time step or on the tolerance: the convergence panel of a
+// scenario, and error against cost of the methods of time integration.
 #pragma once
 
 #include "src/run/run_result.h"
@@ -7,18 +7,20 @@
 
 enum { PANEL_STEPS = 3, PANEL_ROWS = 16 };
 
-// A quantity of the summary at steps h, h/2, h/4.
+// A quantity of the summary at steps h, h/2, h/4 or at tolerances t, t/10, t/100.
 typedef struct convergence_row {
     const char *key; // of summary_table, "first_contact_s"
     double value[PANEL_STEPS];
-    double order; // observed, NaN where it cannot be told
+    double order;  // observed, of steps; NaN where it cannot be told
+    double digits; // shared by the first and the last value, of tolerances; NaN else
 } convergence_row;
 
 typedef struct convergence_panel {
-    double step[PANEL_STEPS]; // [s]
+    bool of_tolerance;           // what differs: method.tolerance, else method.step
+    double setting[PANEL_STEPS]; // its values [-] or [s]
     convergence_row rows[PANEL_ROWS];
     int row_count;
-    int done; // steps that were run to their end, the first ones
+    int done; // settings that were run to their end, the first ones
 } convergence_panel;
 
 // log2 of the ratio of two differences: p if the error is C h^p and the steps are halved.
@@ -26,15 +28,22 @@ typedef struct convergence_panel {
 // do not shrink.
 double observed_order(double coarse, double middle, double fine);
 
-// Runs the scenario at its own method.step, at a half and at a quarter of it. Fails as
+// How many decimal digits two numbers share: -log10 of their distance as a share of the
+// larger one, 0 to 15; NaN if one of them is.
+double shared_digits(double a, double b);
+
+// Runs the scenario at its own method.step, at a half and at a quarter of it; where the
+// stiff engine integrates, whose steps follow their error, at its own method.tolerance,
+// at a tenth and at a hundredth of it, which must be in the parameter's range. Fails as
 // the runs do; STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it. The
-// panel then has the values of the steps before, NaN for the others and for the orders.
+// panel then has the values of the settings before, NaN for the others and for orders and
+// digits.
 // `kept` (NULL: nobody wants them) are PANEL_STEPS runs of zeroes, which become those
 // with their rows, to be finished in any case.
 status convergence_compute(const scenario *s, run_monitor *monitor, run_result *kept,
                            convergence_panel *panel, fault *f);
 
-// The force of a run less that of one with shorter steps, at the instants both have: x
+// The force of a run less that of a more exact one, at the instants both have: x
 // [s] and y [N] have room for as many values as `coarse` has rows. Returns their number.
 // Rows of one instant, which stand before and after an event, are taken in their order.
 size_t convergence_difference(const trace *coarse, const trace *fine, double *x,

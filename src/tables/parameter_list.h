@@ -135,10 +135,10 @@ CHOICE(method, engine, "what the event method integrates with: the arm decides, 
     "two equal links on a rigid wall, a stiff formula of order 13 for any arm",
     2, "auto|pair|stiff", DEFAULT(ENGINE_AUTO))
 REAL(method, tolerance, "error of the stiff engine's steps as its embedded formula of order 7 sees "
-    "it, as a share of the arm's largest momentum; ten times that where decays are faster than "
-    "vibrations, the motor's current and 3e4 1/s, a tenth where an undamped arm bounces "
-    "or a wall moves",
-    "", 1e-13, 1e-3, DEFAULT(1e-10))
+    "it, as a share of the arm's largest momentum; a hundredth of it on a wall that gives, a "
+    "thousandth where an undamped arm bounces or a wall moves, ten times that where decays are "
+    "faster than vibrations, the motor's current and 3e4 1/s; these shares leave at least 1e-12",
+    "", 1e-13, 1e-3, DEFAULT(1e-8))
 END_GROUP(method_parameters)
 
 GROUP(printed_parameters)

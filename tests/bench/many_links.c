@@ -79,9 +79,9 @@ static passage best_pass(const parameters *p, double angle, double velocity,
 
 static parameters chain_of(int links, double damping)
 {
-    return parameters_with(
-        "arm.links=%d arm.damping_ratio=%g arm.hub_joint=beam wall.kind=plane", links,
-        damping);
+    return resolved(
+        formatted("arm.links=%d arm.damping_ratio=%g arm.hub_joint=beam wall.kind=plane",
+                  links, damping));
 }
 
 // The first 50 ms after the tip meets the wall at 0.7 m/s: what they take beyond the way

@@ -291,6 +291,10 @@ bool draw(rig *r, uint64_t which)
     *r = (rig){.number = which};
     random_seed(&r->chance, which);
     set(r, "method.step=%g", spacing);
+
+    // two digits more than by default: the ledger is summed up at the ends of steps, and
+    // rows between them must be as exact
+    set(r, "method.tolerance=1e-10");
     draw_arm(r);
     draw_motor(r);
     draw_wall(r);
