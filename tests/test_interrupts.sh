@@ -175,18 +175,18 @@ interrupted solve corrected/twenty-links motor.voltage=1:3 'peak_force_N<2' \
     --runs 20000 --json solve.json
 says err "of 20000 runs were done, limits"
 part solve.json
-interrupted sweep brief.yaml --vary motor.voltage=1:2:300000 --csv sweep.csv --json sweep.json --plot sweep.svg
-there=$(grep -o '[0-9]* of 300000' err | grep -o '^[0-9]*')
+interrupted sweep brief.yaml --vary motor.voltage=1:2:100000 --csv sweep.csv --json sweep.json --plot sweep.svg
+there=$(grep -o '[0-9]* of 100000' err | grep -o '^[0-9]*')
 [ "$(wc -l <sweep.csv)" = $((there + 1)) ] && [ -s sweep.json ] && [ -s sweep.svg ] ||
     fail "the rows of a sweep that was stopped are not kept"
 says out ": $there runs (grid)"
-interrupted sweep brief.yaml --vary motor.voltage=1:2:600 --vary arm.k2=3:6:500 --plot map.png
+interrupted sweep brief.yaml --vary motor.voltage=1:2:300 --vary arm.k2=3:6:300 --plot map.png
 [ -s map.png ] || fail "the map of a sweep that was stopped is not drawn"
 interrupted compare brief.yaml endless.yaml --plot compare.svg --markdown compare.md
 [ -s compare.svg ] && [ -s compare.md ] || fail "the run that was done is not drawn"
-interrupted robust compare/hybrid --laws hybrid,observer --runs 20000 --csv robust.csv --json robust.json \
+interrupted robust compare/hybrid --laws hybrid,observer --runs 6000 --csv robust.csv --json robust.json \
     --markdown robust.md --plot robust.svg
-there=$(grep -o '[0-9]* of 40000' err | grep -o '^[0-9]*')
+there=$(grep -o '[0-9]* of 12000' err | grep -o '^[0-9]*')
 grep -q "^hybrid,$there," robust.csv && [ -s robust.svg ] && [ -s robust.md ] ||
     fail "the runs of a law that were done are not judged"
 part robust.json
