@@ -1,8 +1,9 @@
-// The terminal lab in a pseudo-terminal under random keys, mouse reports, commands and
-// sizes, on terminals with sixels, with kitty's protocol, without pictures and with
-// nonsense for answers. It must answer all along; at the end what it saves must reproduce
-// its run, and the terminal must be as it was. One session after the other until the time
-// is over, each with a seed of its own.
+// The terminal lab in a pseudo-terminal under random keys, mouse reports, commands, files
+// and sizes, on terminals with sixels, with kitty's protocol, without pictures and with
+// nonsense for answers. It must answer all along; every other session is killed halfway
+// and begun again from its recovery file. At the end what it saves must reproduce its
+// run, and the terminal must be as it was. One session after the other until the time is
+// over, each with a seed of its own.
 //
 // soak_terminal PROGRAM SECONDS [FIRST-SEED]
 #include <errno.h>
@@ -353,7 +354,9 @@ static void give_command(soak *s)
         "sweep arm.k2=4:8:%d motor.voltage=1:3:4", "solve voltage peak_force_N<2",
         "copy run", "copy screen", "why", "poles", "rate %d", "rate off", "explain",
         "session save a.session", "session open a.session", "session save b%d.session",
-        "session open b%d.session", "limit force %d", "signal all",
+        "session open b%d.session", "limit force %d", "signal all", "data odd.csv",
+        "data odd.csv@-0.%d", "data odd.csv play", "data odd.yaml", "open odd.yaml",
+        "session open odd.session", "set control.playback_file odd.csv",
         // none of these can be done
         "frobnicate %d", "set arm.k2 NaN", "set arm.links -%d", "open nothing/such",
         "set", "set motor.voltage", "seek", "save", "save a.doc", "save /proc/none/a.csv",
@@ -410,11 +413,49 @@ static void send_oddities(soak *s)
     }
 }
 
+// Writes what a session saved once more as odd.csv, odd.yaml or odd.session, cut off or
+// with bytes changed; before anything is saved the file is empty or random.
+static void leave_odd_file(soak *s)
+{
+    static const char *const kinds[][2] = {{"a.csv", "odd.csv"},
+                                           {"a.yaml", "odd.yaml"},
+                                           {"a.session", "odd.session"}};
+    static char bytes[1 << 20];
+    char path[128];
+    const int kind = chance(s, 3);
+
+    // what is there
+    snprintf(path, sizeof path, "%s/%s", s->folder, kinds[kind][0]);
+    FILE *stream = fopen(path, "rb");
+    size_t length = (size_t)chance(s, 2) * 4000;
+    if (stream != NULL) {
+        length = fread(bytes, 1, sizeof bytes, stream);
+        fclose(stream);
+    }
+
+    // with some of its bytes changed, and often no end
+    const int changes = stream == NULL ? (int)length : chance(s, 6);
+    for (int i = 0; i < changes && length > 0; i++) {
+        bytes[chance(s, (int)length)] = (char)chance(s, 256);
+    }
+    if (length > 0 && chance(s, 2) == 0) {
+        length = (size_t)chance(s, (int)length);
+    }
+    snprintf(path, sizeof path, "%s/%s", s->folder, kinds[kind][1]);
+    stream = fopen(path, "wb");
+    if (stream != NULL) {
+        fwrite(bytes, 1, length, stream);
+        fclose(stream);
+    }
+}
+
 static void do_something(soak *s)
 {
     int what = chance(s, 100);
-    if (what < 55) {
+    if (what < 54) {
         press_something(s);
+    } else if (what < 55) {
+        leave_odd_file(s);
     } else if (what < 72) {
         give_command(s);
     } else if (what < 84) {
@@ -438,9 +479,9 @@ static void do_something(soak *s)
 
 // --- a session -------------------------------------------------------------------------
 
-// Starts the lab on a pseudo-terminal of its own, in an empty folder. Without one the
-// test is skipped (status 77).
-static void start(soak *s)
+// Opens a pseudo-terminal and an empty folder. Without one the test is skipped (status
+// 77).
+static void prepare(soak *s)
 {
     // the terminal
     s->master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -470,6 +511,14 @@ static void start(soak *s)
         fclose(broken);
     }
 
+    // what it shows is read without waiting
+    fcntl(s->master, F_SETFL, fcntl(s->master, F_GETFL) | O_NONBLOCK);
+}
+
+// Starts the lab and waits until it has the terminal: keys that come before would be
+// echoed.
+static void start(soak *s)
+{
     // the lab, whose standard streams and controlling terminal are the slave
     s->child = fork();
     if (s->child == 0) {
@@ -489,9 +538,32 @@ static void start(soak *s)
         }
         _exit(127);
     }
+    AWAIT(s, s->seen.mode[1049], ANSWER_TIME, "does not start within %g s", ANSWER_TIME);
+}
 
-    // what it shows is read without waiting
-    fcntl(s->master, F_SETFL, fcntl(s->master, F_GETFL) | O_NONBLOCK);
+// Kills the lab as a crash would and starts it again on the same terminal, where its
+// recovery file is offered; `y` and what comes next answer that.
+static void kill_and_start(soak *s)
+{
+    int status;
+    kill(s->child, SIGKILL);
+    AWAIT(s, has_ended(s, &status), ANSWER_TIME, "cannot be killed");
+    if (!WIFSIGNALED(status) || WTERMSIG(status) != SIGKILL) {
+        fail(s, "ended by itself with status %d", status);
+    }
+    watch(s, 0);
+    tcsetattr(s->slave, TCSANOW, &s->before);
+    s->seen = (tracker){0};
+    start(s);
+    send_text(s, chance(s, 4) ? "y" : "n");
+}
+
+static void act_for(soak *s, double seconds)
+{
+    for (double until = clock_seconds(CLOCK_MONOTONIC) + seconds;
+         clock_seconds(CLOCK_MONOTONIC) < until;) {
+        do_something(s);
+    }
 }
 
 // Back to the panels from wherever the keys led, with a short run.
@@ -617,13 +689,13 @@ static void run_session(soak *s, uint64_t seed, double seconds)
     s->seen = (tracker){0};
     s->sent = 0;
     random_seed(&s->random, seed);
+    prepare(s);
     start(s);
-    // keys that come before would be echoed
-    AWAIT(s, s->seen.mode[1049], ANSWER_TIME, "does not start within %g s", ANSWER_TIME);
-    for (double until = clock_seconds(CLOCK_MONOTONIC) + seconds;
-         clock_seconds(CLOCK_MONOTONIC) < until;) {
-        do_something(s);
+    act_for(s, 0.5 * seconds);
+    if (chance(s, 2) == 0) {
+        kill_and_start(s);
     }
+    act_for(s, 0.5 * seconds);
     come_back(s);
     probe(s);
     save(s, "last.csv");
