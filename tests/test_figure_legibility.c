@@ -607,6 +607,27 @@ status __wrap_artwork_publish(const artwork *a, const figure_options *o, const c
     return __real_artwork_publish(a, o, path, with_csv, f);
 }
 
+// Complains unless a command line of the program, which runs once in a process, draws one
+// picture that can be read.
+static void check_command(const char *line, double width)
+{
+    g_auto(GStrv) words =
+        g_strsplit(formatted("impactlab %s --width %g", line, width), " ", -1);
+    asked_for = line;
+    const pid_t child = fork();
+    if (child == 0) {
+        complaints = 0;
+        const int ended = program_run((int)g_strv_length(words), words);
+        _exit(ended != 0 || published != 1 || complaints > 0);
+    }
+    int ending;
+    assert_int_equal(waitpid(child, &ending, 0), child);
+    if (ending != 0) {
+        complaints++;
+        print_error("%s at %g mm\n", line, width);
+    }
+}
+
 TEST(every_command_draws_what_can_be_read)
 {
     static const char *const commands[] = {
@@ -633,26 +654,27 @@ TEST(every_command_draws_what_can_be_read)
     complaints = 0;
     for (size_t i = 0; i < G_N_ELEMENTS(commands); i++) {
         for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
-            g_auto(GStrv) words =
-                g_strsplit(formatted("impactlab %s --quiet --plot drawn.svg --width %g",
-                                     commands[i], widths[k]),
-                           " ", -1);
-
-            // the program, which runs once in a process
-            asked_for = commands[i];
-            const pid_t child = fork();
-            if (child == 0) {
-                complaints = 0;
-                const int ended = program_run((int)g_strv_length(words), words);
-                _exit(ended != 0 || published != 1 || complaints > 0);
-            }
-            int ending;
-            assert_int_equal(waitpid(child, &ending, 0), child);
-            if (ending != 0) {
-                complaints++;
-                print_error("%s at %g mm\n", commands[i], widths[k]);
-            }
+            check_command(formatted("%s --quiet --plot drawn.svg", commands[i]),
+                          widths[k]);
         }
+    }
+    assert_int_equal(complaints, 0);
+}
+
+// Labels of levels that lie together are apart, or left out.
+TEST(levels_that_lie_together_can_be_read)
+{
+    put_file(
+        "levels.yaml",
+        "runs: [{name: a, scenario: compare/hybrid}]\n"
+        "panels:\n"
+        "  - signals: [force, force_reading]\n"
+        "    levels: [{at: 1, label: command}, {at: 0.95, label: less},\n"
+        "             {at: 1.05, label: more}, {at: 1.06, label: much more},\n"
+        "             {at: 0.94, label: much less}, {at: 1.01, label: a bit more}]\n");
+    complaints = 0;
+    for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
+        check_command("plot levels.yaml -o drawn.svg", widths[k]);
     }
     assert_int_equal(complaints, 0);
 }

@@ -202,13 +202,19 @@ bool has_y_labels(const drawing *d, const panel_layout *l)
 }
 
 // The title of the vertical axis, upwards at the left of everything.
+double y_title_room(const panel_layout *l)
+{
+    enum { APART = 4 }; // titles of neighbours [pt]
+    return l->plane.box.height + PANEL_SPACE - APART;
+}
+
 void draw_y_title(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
-    g_autofree char *title = fitting_title(d, &l->y, box->height + PANEL_SPACE);
+    g_autofree char *title = fitting_title(d, &l->y, y_title_room(l));
     text_block t = figure_text_of(d, title, d->style.label);
     t.align = TEXT_CENTRE;
-    t.width = box->height + PANEL_SPACE;
+    t.width = y_title_room(l);
     if (title[0] != '\0' && has_y_labels(d, l)) {
         draw_rotated(d, t, d->column[l->column].edge, box->y + box->height / 2,
                      d->style.colours->text);

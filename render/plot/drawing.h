@@ -170,6 +170,8 @@ double widest_tick(const drawing *d, const axis *a, double size);
 char *fitting_title(const drawing *d, const axis *a, double length);
 // Height of that title, wrapped beside the axis; 0 without a title.
 double axis_title_height(const drawing *d, const axis *a, double length);
+// The length that the title of a panel's vertical axis may have [pt].
+double y_title_room(const panel_layout *l);
 void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y);
 // Axis lines, ticks and their labels, on the left and below.
 typedef struct axes_look {

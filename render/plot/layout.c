@@ -172,9 +172,8 @@ static double left_space(const drawing *d, const panel_layout *l)
     }
 
     // title, tick labels and ticks
-    double left = axis_title_height(d, &l->y, l->plane.box.height + PANEL_SPACE) +
-                  LABEL_SPACE + widest_tick(d, &l->y, d->style.tick) + TICK_SPACE +
-                  TICK_LENGTH;
+    double left = axis_title_height(d, &l->y, y_title_room(l)) + LABEL_SPACE +
+                  widest_tick(d, &l->y, d->style.tick) + TICK_SPACE + TICK_LENGTH;
     if (l->panel->impulse_count > 0 && l->panel->impulse_label != NULL) {
         g_autofree char *label = impulse_strip_label(d->fig, l->panel);
         left = fmax(left, width_of(d, label, d->style.small) + TICK_SPACE + TICK_LENGTH);

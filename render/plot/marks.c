@@ -259,8 +259,21 @@ bool place_marks_inside(drawing *d, placement *grid)
 
 // ---- levels
 
+// Whether a label would lie over that of an earlier level.
+static bool meets_earlier_label(const panel_layout *l, int index, const figure_rect *r)
+{
+    for (int i = 0; i < index; i++) {
+        const figure_rect *other = &l->level_place[i];
+        if (other->width > 0 && rects_meet(r, other, 0)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // Chooses the place of a level's label: at the right or left end of its line, above or
-// below it, whichever has the least ink under it.
+// below it, whichever has the least ink under it; none where all lie over labels of
+// earlier levels.
 static figure_rect level_label(const drawing *d, const panel_layout *l, int index,
                                const placement *grid)
 {
@@ -275,7 +288,7 @@ static figure_rect level_label(const drawing *d, const panel_layout *l, int inde
     for (int k = 0; k < 4; k++) {
         figure_rect r = {lefts[k / 2], tops[k % 2], width, LEVEL_ROOM};
         bool fits = r.y >= box->y && r.y + r.height <= box->y + box->height;
-        if (fits &&
+        if (fits && !meets_earlier_label(l, index, &r) &&
             (best.width == 0 || placement_ink(grid, r) < placement_ink(grid, best))) {
             best = r;
         }

@@ -10,7 +10,6 @@
 
 // Sizes in beam lengths; the least of them in pixels where the arm is small.
 #define BEAM_WIDTH 0.012
-#define HUB_RADIUS 0.05
 #define PIN_RADIUS 0.008
 #define SLAB_FROM  0.93 // of a flat wall, along the arm
 #define SLAB_TO    1.07
@@ -204,7 +203,7 @@ static void paint_plan_parts(const plan_painter *g)
 
     // the hub with a spoke that tells its angle
     const double hub_x = plan_x(g->view, 0), hub_y = plan_y(g->view, 0);
-    const double radius = fmin(size_of(g, HUB_RADIUS, 6), 0.3 * g->view->height);
+    const double radius = plan_hub_radius(g->view, p->parameters->arm.length);
     pen(g, p->colours.hub, 2);
     disc(g, hub_x, hub_y, radius, p->colours.hub, 0.75);
     picture_line(g->cr, hub_x, hub_y, hub_x + radius * cos(row.hub_angle),

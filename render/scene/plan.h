@@ -15,6 +15,9 @@ typedef struct plan_view {
     double width, height; // [pixels]
 } plan_view;
 
+// The radius of the hub's disc in a view of a beam of some length [m], in pixels.
+double plan_hub_radius(const plan_view *v, double length);
+
 // What shows all that the arm sweeps over, and its wall, on a picture of this size
 // [pixels or dots].
 plan_view plan_whole(const plan_extent *e, const parameters *p, double width,

@@ -4,7 +4,8 @@
 #include <math.h>
 
 // An angle beyond which the whole circle is shown [rad].
-#define FAR_OUT 0.8
+#define FAR_OUT    0.8
+#define HUB_RADIUS 0.05 // of the length of the beam
 
 void plan_extent_add(plan_extent *e, const trace *t, const arm_parameters *beam,
                      size_t first, size_t samples)
@@ -43,6 +44,11 @@ static double round_magnification(double most)
     return chosen;
 }
 
+double plan_hub_radius(const plan_view *v, double length)
+{
+    return fmin(fmax(6, HUB_RADIUS * length * v->scale), 0.3 * v->height);
+}
+
 plan_view plan_whole(const plan_extent *e, const parameters *p, double width,
                      double height)
 {
@@ -69,8 +75,10 @@ plan_view plan_whole(const plan_extent *e, const parameters *p, double width,
     v.left = -0.1 * length;
     v.magnified = round_magnification(height * 0.62 / fmax(v.scale * (high - low), 1e-9));
 
-    // the force's arrow comes from above, so more of the room is left there
+    // the force's arrow comes from above, so more of the room is left there, if the hub
+    // is seen whole without it
     const double spare = height / (v.scale * v.magnified) - (high - low);
-    v.bottom = low - 0.3 * spare;
+    const double hub = (plan_hub_radius(&v, length) + 1) / (v.scale * v.magnified);
+    v.bottom = fmin(low - 0.3 * spare, fmax(-hub, low - 0.45 * spare));
     return v;
 }
