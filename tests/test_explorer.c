@@ -344,6 +344,7 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
     patient.view.playback.speed = ex.view.playback.speed;
     press(&ex, ":seek 2<Enter>");
     press(&patient, ":seek end<Enter>:seek 2<Enter>");
+    free(picture(&patient, 150, 50, GLYPHS_BRAILLE));
     ex.model.session.seen = patient.model.session.seen;
     ex.model.session.base.parameters = patient.model.session.base.parameters;
     ex.model.session.input_count = patient.model.session.input_count = 0;

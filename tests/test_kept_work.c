@@ -246,7 +246,7 @@ TEST(test_help_is_where_one_stands)
     }
     press(&ex, "<Esc>");
     static const char *const words[][2] = {
-        {"export", ":save"}, {"picture", ":scene"}, {"bounce", "wall.restitution"},
+        {"export", ":save"}, {"picture", ":save"}, {"bounce", "wall.restitution"},
         {"goal", ":solve"},  {"below", ":solve"},
     };
     for (EACH(c, words)) {

@@ -97,6 +97,86 @@ TEST(the_run_as_opened_stays_beside_pinned_runs)
                 summary_with("corrected/first-impact", "").peak_force_N, 0);
 }
 
+// Where a part of a panel is on a screen of some size, no width if nowhere.
+static area part_at(explorer *ex, int width, int height, panel_id id, hit_part part)
+{
+    free(picture(ex, width, height, GLYPHS_BRAILLE));
+    for (int i = 0; i < ex->layout.hit_count; i++) {
+        const hit_area *h = &ex->layout.hits[i];
+        if (h->panel == id && h->part == part) {
+            return h->area;
+        }
+    }
+    return (area){0};
+}
+
+// How often a text is in another one.
+static int count_in(const char *text, const char *wanted)
+{
+    int count = 0;
+    while ((text = strstr(text, wanted)) != NULL) {
+        count++;
+        text++;
+    }
+    return count;
+}
+
+// A run that was kept has one row until something changes, however it was named.
+TEST(a_kept_run_has_one_row)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":set motor.voltage 0.5<Enter>:pin half<Enter><Esc>");
+    KEPT_TEXT(text) = picture(&ex, 120, 40, GLYPHS_BRAILLE);
+    assert_int_equal(count_in(text, formatted("  %.4g ", peak(&ex))), 1);
+    assert_at_top(&ex, "half");
+    assert_at_top(&ex, "ref");
+
+    // the row of the next one is there already
+    const area curves = part_at(&ex, 120, 40, PANEL_CURVES, PART_BODY);
+    press(&ex, ":set motor.voltage 0.6<Enter><Esc>");
+    assert_at_top(&ex, "voltage 0.6");
+    assert_at_top(&ex, "half");
+    assert_int_equal(part_at(&ex, 120, 40, PANEL_CURVES, PART_BODY).y, curves.y);
+}
+
+// On a tall screen the knobs end with the arm and the curves have the whole width, unless
+// the side has more to show.
+TEST(curves_have_the_width_of_a_tall_screen)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    assert_true(part_at(&ex, 200, 60, PANEL_CURVES, PART_BODY).width > 180);
+    assert_true(part_at(&ex, 120, 40, PANEL_CURVES, PART_BODY).width < 80);
+    assert_shows_at(&ex, 200, 60, "touching now would bring");
+    for (int i = 0; i < ex.view.parameters.knob_count; i++) {
+        assert_shows_at(&ex, 200, 60, parameter_table[ex.view.parameters.knobs[i]].path);
+    }
+    press(&ex, "<Tab>");
+    assert_true(part_at(&ex, 200, 60, PANEL_CURVES, PART_BODY).width < 140);
+}
+
+// Of a map with more lines than there is room for those about the selected run are drawn,
+// and a click takes what it points at.
+TEST(a_map_of_many_lines_is_drawn_in_part)
+{
+    enum { ACROSS = 3, UP = 20 };
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex,
+          ":set run.duration 0.4<Enter>:sweep arm.k2=4:6:3 motor.voltage=1:2:20<Enter>");
+    while (!lab_sweep_is_done(&ex.model.sweep)) {
+        explorer_follow(&ex);
+    }
+    const area low = part_at(&ex, 80, 24, PANEL_SWEEP, PART_CELLS);
+    assert_true(low.height > 4 && low.height < UP);
+    click_at(&ex, low.x, low.y);
+    assert_int_equal(ex.model.sweep.selected, (low.height - 1) * ACROSS);
+
+    // from the last run the first line is seen
+    act_select_swept(&ex.model, ACROSS * UP - 1 - ex.model.sweep.selected);
+    const area high = part_at(&ex, 80, 24, PANEL_SWEEP, PART_CELLS);
+    click_at(&ex, high.x, high.y);
+    assert_int_equal(ex.model.sweep.selected, (UP - 1) * ACROSS);
+}
+
 // With five runs the strip has as many as there is room for, on each screen the present
 // one and the reference with their differences; tall ones have all.
 TEST(five_runs_stand_side_by_side)
@@ -200,6 +280,22 @@ TEST(a_law_is_told_by_overshoot_and_settling)
     value_range force;
     assert_true(view_pane_axis(&ex.model, &ex.view, 0, &force));
     check_below(force.high, 2);
+}
+
+// Nor does that of a recording in which the force itself stands, too.
+TEST_IN_FOLDER(a_recorded_spike_is_no_range)
+{
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    press(&ex, ":save bench.csv<Enter>:data bench.csv<Enter>");
+    value_range force;
+    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &force));
+    check_below(force.high, 2);
+
+    // a knob that another law leaves without effect goes, selected or not
+    press(&ex, ":data off<Enter>:open corrected/first-impact<Enter>"
+               ":set control.law hybrid<Enter>");
+    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    assert_null(model_inert_reason(&ex.model, ex.view.parameters.parameter));
 }
 
 // Of a chain on a rigid wall the largest force has no limit as links are added: the strip

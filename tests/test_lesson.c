@@ -102,7 +102,7 @@ TEST(test_what_a_step_names_is_on_the_screen)
         {"impulse-and-force", 5, false, "voltage"},
         {"two-predictors", 1, true, "energy 1.48 N"},
         {"two-predictors", 2, false, "energy 1.48 N"},
-        {"two-predictors", 3, true, "came 1.34 N"},
+        {"two-predictors", 3, true, "touched: 1.34 N"},
         {"two-predictors", 3, true, "linearised 1.34 N"},
         {"two-predictors", 5, false, "k2"},
         {"step-size", 1, true, "force"},

@@ -108,7 +108,7 @@ TEST(test_a_run_of_a_few_rows_is_pinned_too)
     press(&ex, ":set run.duration 0.005<Enter>b");
     assert_int_equal(ex.model.pinned.count, 1);
     press(&ex, ":set motor.voltage<Enter>>");
-    assert_true(ex.model.session.has_ghost);
+    assert_int_equal(model_run_count(&ex.model), 3);
 }
 
 TEST(test_the_difference_is_that_of_the_runs)

@@ -91,7 +91,6 @@ TEST(what_is_too_long_or_no_value_is_refused)
     assert_non_null(strstr(f.text, "too long"));
     assert_int_not_equal(session_adjust(&s, PARAMETER_INDEX(arm.k2), "soft", &f),
                          STATUS_OK);
-    assert_false(s.has_ghost);
 
     // too long by its last character
     const char *just = formatted("%s7 ", repeated('0', SESSION_INPUT_TEXT - 2));
@@ -133,7 +132,6 @@ TEST(adjusting_keeps_what_was_before)
     assert_int_equal(session_adjust(&s, voltage, "1.1", &f), STATUS_OK);
     assert_int_equal(session_adjust(&s, voltage, "1.2", &f), STATUS_OK);
     assert_int_equal(s.input_count, 1);
-    assert_true(s.has_ghost);
     assert_int_not_equal(session_adjust(&s, voltage, "much", &f), STATUS_OK);
     assert_int_equal(s.input_count, 1);
     assert_string_equal(s.inputs[0].text, "1.2");

@@ -45,6 +45,16 @@ saved law.png 1 'open compare/hybrid' 'seek 0.4'
 grep -q "^arm: 0.4" law.yaml || fail "the arm is not at the cursor"
 grep -q "controller_mode.*label: \"impact\"" law.yaml || fail "law.yaml names no modes"
 
+# the range is that of the screen, which a reading's spike of 5 N and a limit of 10 V do not set
+grep "force_reading" law.yaml | grep -q "range: \[0, 1[.]" || fail "law.yaml: a spike sets the range"
+grep -qF "command +/-5 %" law.yaml || fail "law.yaml has no band"
+grep -q "voltage_limit" law.yaml && fail "law.yaml: a limit beyond the pane sets the range"
+
+# a run that was just kept is drawn once
+saved kept.png 1 'set motor.voltage 0.5' 'pin half'
+[ "$(grep -c "  - name: run" kept.yaml)" = 2 ] || fail "kept.yaml: the run is not drawn once"
+grep -q 'label: "half"' kept.yaml || fail "kept.yaml: the run has lost its name"
+
 # changes from the start and in time, pushes, names, bounds, notes, hidden runs, zoom, views
 saved all.pdf 3 'set motor.voltage 0.5' branch 'seek 0.3' 'set motor.voltage 2' 'push 0.02' 'pin "zwei": <&> \' \
     'set arm.k2 6' 'limit force 1.2' 'zoom 0.2 0.6' 'note @0.4 a < b & "q"' 'mark 0.35' 'seek 0.5' \

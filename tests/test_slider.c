@@ -70,9 +70,10 @@ TEST(test_the_run_follows_a_drag)
     for (int i = 0; i < 10; i++) {
         point(&ex, POINTER_DRAG, s.area.x + s.area.width - 1 - i / 5, s.area.y + i);
     }
-    // the run follows the mouse, the run before is its ghost, and all of it is one change
+    // the run follows the mouse, that as opened stays beside it, and all of it is one
+    // change
     assert_true(ex.model.session.version > computed);
-    assert_true(ex.model.session.has_ghost);
+    assert_true(ex.model.opened_run.shown);
     check_below(1, value_of(&ex, voltage));
     assert_int_equal(ex.model.session.input_count, 1);
     point(&ex, POINTER_DRAG, s.area.x + s.area.width + 50, s.area.y);
@@ -88,7 +89,7 @@ TEST(test_the_run_follows_a_drag)
     assert_int_equal(ex.model.session.input_count, 1);
     press(&ex, "u");
     check_close(value_of(&ex, voltage), 1, 0);
-    assert_false(ex.model.session.has_ghost);
+    assert_false(ex.model.opened_run.shown);
 }
 
 TEST(test_clicks_select_and_the_wheel_nudges)

@@ -176,25 +176,6 @@ status session_change_from_start(session *s, const parameters *p, int parameter,
     return code;
 }
 
-// Makes the first of several small changes of a parameter: the run before it is kept as
-// the session's ghost.
-static status begin_adjusting(session *s, int parameter, given_value v, fault *f)
-{
-    run_result before;
-    const bool kept = s->computing == NULL && run_share(&s->run, &before) == STATUS_OK;
-
-    // the ghost takes over the run before, else it is given back
-    status code = change(s, parameter, v, f);
-    if (kept && code == STATUS_OK) {
-        session_forget_ghost(s);
-        s->ghost = before;
-        s->has_ghost = true;
-    } else if (kept) {
-        run_finish(&before);
-    }
-    return code;
-}
-
 // Whether the last input gave this parameter a value at the cursor's instant. A value
 // ".NAME=VALUE" of control.settings continues one of the same name only.
 static bool continues_last(const session *s, int parameter, given_value v)
@@ -219,7 +200,7 @@ static status adjust(session *s, int parameter, given_value v, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
     if (!continues_last(s, parameter, v)) {
-        return begin_adjusting(s, parameter, v, f);
+        return change(s, parameter, v, f);
     }
 
     // a value that leads back to the one before the last input undoes that input
@@ -227,7 +208,6 @@ static status adjust(session *s, int parameter, given_value v, fault *f)
     parameters scratch = session_parameters_at(s, s->now);
     if (set_given(&scratch, parameter, v, NULL) == STATUS_OK &&
         parameter_get(&scratch, parameter) == replaced.before) {
-        session_forget_ghost(s);
         return session_undo(s, f);
     }
 

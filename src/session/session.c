@@ -420,15 +420,6 @@ void session_forget_other(session *s)
     }
 }
 
-void session_forget_ghost(session *s)
-{
-    if (s->has_ghost) {
-        run_finish(&s->ghost);
-        s->has_ghost = false;
-        s->version++;
-    }
-}
-
 // --- beginning and end ---
 
 status session_open(session *s, scenario *base, double patience, fault *f)
@@ -448,7 +439,6 @@ void session_finish(session *s)
 {
     session_stop(s);
     session_forget_other(s);
-    session_forget_ghost(s);
     run_finish(&s->run);
     free(s->effective.actions);
     free(s->inputs);

@@ -56,8 +56,6 @@ typedef struct session {
     run_result run;     // of `effective`
     run_result other;   // the run branched from
     bool has_other;
-    run_result ghost; // the run before a value that is being adjusted
-    bool has_ghost;
     double now;  // the cursor [s]
     size_t row;  // the last row whose time is not after `now`
     double seen; // the latest instant the cursor has been at since the last change [s]
@@ -103,9 +101,6 @@ void session_forget_other(session *s);
 // On failure nothing changes and f says why.
 status session_allow_code(session *s, fault *f);
 
-// Forgets the run before the value that was adjusted last.
-void session_forget_ghost(session *s);
-
 // --- the cursor: the instant that is looked at ---
 
 // The row at the cursor, never NULL.
@@ -134,8 +129,8 @@ status session_change_number(session *s, int parameter, double value, fault *f);
 status session_change_from_start(session *s, const parameters *p, int parameter,
                                  fault *f);
 // The same as session_change, in the place of the last input if that gave this parameter
-// a value at this very instant: small steps to a value are one input (session.ghost is
-// the run before them), and none once they have led back to where they began.
+// a value at this very instant: small steps to a value are one input, and none once they
+// have led back to where they began.
 status session_adjust(session *s, int parameter, const char *text, fault *f);
 status session_adjust_number(session *s, int parameter, double value, fault *f);
 // The same as session_change for an impulse at the tip [N s].

@@ -1,4 +1,4 @@
-// The commands that read and write files: scenarios, figures, rows, screens, scenes.
+// The commands that read and write files: scenarios, figures, rows, screens.
 #include <glib.h>
 #include <ctype.h>
 #include <stdlib.h>
@@ -391,38 +391,6 @@ bool act_editor(const explorer_model *model, explorer_input *input)
     }
     snprintf(input->edits, sizeof input->edits, "%s", name);
     return true;
-}
-
-// The arm in space at the cursor's instant.
-bool act_scene(const explorer_model *model, explorer_input *input, const char *argument)
-{
-    const session *s = &model->session;
-    const scene_options options = {0};
-
-    // without a name the prompt proposes one
-    if (argument[0] == '\0') {
-        propose_file_name(model, input, "scene", "-arm.png");
-        return true;
-    }
-
-    // nothing is replaced, and nothing incomplete is drawn
-    if (exists(argument)) {
-        return act_refuse(input, "%.200s is there already: give the scene another name",
-                          argument);
-    }
-    if (!act_need_whole_run(model, input) ||
-        !act_succeeded(input, drawing_open(&input->fault))) {
-        return false;
-    }
-
-    // the cursor's instant
-    const scene_picture shot = {.scenario = &s->effective,
-                                .result = &s->run,
-                                .options = options,
-                                .times = &s->now,
-                                .count = 1};
-    return act_succeeded(input, drawing()->scene_write(&shot, argument, &input->fault)) &&
-           tell_file(input, true, argument);
 }
 
 // --- the clipboard ---------------------------------------------------------------------

@@ -210,9 +210,6 @@ static void escape(explorer *ex)
     } else {
         ex->view.mark.set = false;
     }
-
-    // what was only shown for a moment goes with it
-    session_forget_ghost(&ex->model.session);
     act_clear_message(&ex->input);
 }
 

@@ -185,6 +185,8 @@ static void run_label(const shown_recipe *r, const shown_run *run, char label[RU
         snprintf(label, RUN_NAME, "%s", r->model->pinned.runs[run->index].name);
     } else if (run->kind == SHOWN_OPENED) {
         snprintf(label, RUN_NAME, "%s", AS_OPENED);
+    } else if (model_kept_run(r->model) != NULL) {
+        snprintf(label, RUN_NAME, "%s", model_kept_run(r->model)->name);
     } else {
         run_list_describe(&r->model->session, label, RUN_NAME);
     }
@@ -234,12 +236,12 @@ static status write_sources(const shown_recipe *r, fault *f)
 
 // --- panels ----------------------------------------------------------------------------
 
-// The end of a panel: its range, unless that follows from the data.
-static void end_panel(const shown_recipe *r, int pane_index)
+// The end of a panel: its range, unless that follows from the data (`follows`).
+static void end_panel(const shown_recipe *r, int pane_index, bool follows)
 {
     value_range axis;
-    if (r->view->panes.pane[pane_index].is_fixed &&
-        view_pane_axis(r->model, r->view, pane_index, &axis)) {
+    const bool is_fixed = r->view->panes.pane[pane_index].is_fixed;
+    if ((is_fixed || !follows) && view_pane_axis(r->model, r->view, pane_index, &axis)) {
         write_pair(r, ", range: [", axis.low, axis.high);
     }
     fputs("}\n", r->stream);
@@ -252,21 +254,27 @@ static void write_difference(const shown_recipe *r, int pane_index, int signal,
     fprintf(r->stream, "  - {difference: [%s, %s]", of, less);
     write_quoted(r, ", signals: [", signal_table[signal].name);
     fputc(']', r->stream);
-    end_panel(r, pane_index);
+    end_panel(r, pane_index, true);
 }
 
-// Setpoints and limits of a panel over time.
-static void write_bounds(const shown_recipe *r, const pane *p, int first)
+// Setpoints and limits of a panel over time, as far as the pane has room for them.
+static void write_bounds(const shown_recipe *r, int pane_index, int first)
 {
     shown_level levels[SHOWN_LEVELS];
+    value_range axis = {-HUGE_VAL, HUGE_VAL};
+    const pane *p = &r->view->panes.pane[pane_index];
     const int count = model_levels(r->model, p, levels);
     const char *before = ", levels: [{at: ";
+    view_pane_axis(r->model, r->view, pane_index, &axis);
     for (int i = 0; i < count; i++) {
-        if (levels[i].signal != first) {
+        const double at = levels[i].value;
+        if (levels[i].signal != first || at < axis.low || at > axis.high) {
             continue;
         }
-        write_value(r, before, levels[i].value);
-        write_plain(r, ", label: ", levels[i].name);
+        write_value(r, before, at);
+        if (levels[i].name[0] != '\0') {
+            write_plain(r, ", label: ", levels[i].name);
+        }
         fputc('}', r->stream);
         before = ", {at: ";
     }
@@ -304,11 +312,14 @@ static void write_curves(const shown_recipe *r, int pane_index, const int *signa
             }
         }
         fputc(']', r->stream);
-        if (signals[k] == SIGNAL_INDEX(force)) {
+        const bool is_force = signals[k] == SIGNAL_INDEX(force);
+        if (is_force) {
             fputs(", weight: 2, zero: true, impulses: true", r->stream);
         }
-        write_bounds(r, &r->view->panes.pane[pane_index], signals[k]);
-        end_panel(r, pane_index);
+        write_bounds(r, pane_index, signals[k]);
+
+        // readings beside the force do not count for the range
+        end_panel(r, pane_index, !(is_force && alone && count > 1));
     }
 }
 
@@ -377,10 +388,18 @@ static void take_runs(shown_recipe *r, const pane *only)
     all[0].kind = SHOWN_PRESENT;
     r->baseline = -1;
     for (int i = 0; i < count; i++) {
-        if (all[i].kind == SHOWN_BEFORE || all[i].kind == SHOWN_MEASURED) {
+        const bool is_baseline =
+            all[i].kind == baseline.kind && all[i].index == baseline.index;
+        if (all[i].kind == SHOWN_MEASURED) {
             continue;
         }
-        if (compares && all[i].kind == baseline.kind && all[i].index == baseline.index) {
+
+        // one that is the present run itself is not drawn twice
+        if (is_baseline && model_kept_run(model) != NULL) {
+            r->baseline = 0;
+            continue;
+        }
+        if (compares && is_baseline) {
             r->baseline = r->run_count;
         }
         r->runs[r->run_count++] = all[i];

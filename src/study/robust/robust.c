@@ -202,7 +202,8 @@ static status apply_case(scenario *derived, const robust_case *c, fault *f)
                                                  .value = c->push_impulse[i],
                                                  .added = true});
     }
-    return scenario_resolve(derived, f);
+    const parameters p = derived->parameters;
+    return scenario_take_parameters(derived, &p, f);
 }
 
 status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c,

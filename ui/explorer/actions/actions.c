@@ -245,7 +245,6 @@ bool act_change_parameter(explorer_model *model, explorer_input *input, int para
     session *s = &model->session;
     char converted[NUMBER_TEXT];
     const char *value = act_convert(parameter, text, converted);
-    session_forget_ghost(s);
     return act_succeeded(input, session_change(s, parameter, value, &input->fault)) &&
            act_tell_change(model, input);
 }
@@ -255,7 +254,6 @@ bool act_change_number(explorer_model *model, explorer_input *input, int paramet
 {
     assert(parameter >= 0 && parameter < parameter_count);
     session *s = &model->session;
-    session_forget_ghost(s);
     return act_succeeded(input,
                          session_change_number(s, parameter, value, &input->fault)) &&
            act_tell_change(model, input);

@@ -155,7 +155,6 @@ bool act_save_now(explorer_model *model, explorer_view *view, explorer_input *in
 bool act_editor(const explorer_model *model, explorer_input *input);
 bool act_copy(explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
-bool act_scene(const explorer_model *model, explorer_input *input, const char *argument);
 bool act_session(explorer_model *model, explorer_view *view, explorer_input *input,
                  const char *argument);
 bool act_interrupt(explorer_model *model, const explorer_view *view,

@@ -238,7 +238,6 @@ bool act_edit(explorer_model *model, explorer_view *view, explorer_input *input,
 bool act_push(explorer_model *model, explorer_input *input, const char *argument)
 {
     session *s = &model->session;
-    session_forget_ghost(s);
     double impulse = 0.01;
     if (!act_read_number_or(input, argument, "", &impulse) ||
         !act_succeeded(input, session_push(s, impulse, &input->fault))) {
@@ -268,7 +267,6 @@ static bool change_scenario(explorer_model *model, explorer_view *view,
 bool act_undo(explorer_model *model, explorer_view *view, explorer_input *input)
 {
     session *s = &model->session;
-    session_forget_ghost(s);
     if (s->input_count == 0 && model_has_visit(model, -1)) {
         return change_scenario(model, view, input, -1);
     }
@@ -279,7 +277,6 @@ bool act_undo(explorer_model *model, explorer_view *view, explorer_input *input)
 bool act_redo(explorer_model *model, explorer_view *view, explorer_input *input)
 {
     session *s = &model->session;
-    session_forget_ghost(s);
     if (s->input_count == s->input_total && model_has_visit(model, 1)) {
         return change_scenario(model, view, input, 1);
     }

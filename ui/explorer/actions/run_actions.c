@@ -19,7 +19,6 @@ bool act_apply_baseline(explorer_model *model, explorer_input *input)
 // Pins the present run and makes it the baseline.
 static bool pin(explorer_model *model, explorer_input *input, const char *name)
 {
-    session_forget_ghost(&model->session);
     return act_need_whole_run(model, input) &&
            act_succeeded(input, run_list_pin(&model->pinned, &model->session, name,
                                              &input->fault)) &&
@@ -45,7 +44,6 @@ bool act_pin(explorer_model *model, explorer_input *input, const char *argument)
 
 bool act_forget(explorer_model *model, explorer_input *input)
 {
-    session_forget_ghost(&model->session);
     if (model->pinned.baseline >= 0) {
         run_list_drop(&model->pinned, model->pinned.baseline);
     }
@@ -283,9 +281,7 @@ bool act_continue_sweep(explorer_model *model, explorer_input *input)
     }
     const char *across = lab_sweep_is_map(sweep) ? " and < >" : "";
     return act_tell(input,
-                    "%d runs: arrows%s choose one, Enter opens it, :metric another "
-                    "quantity, Esc ends "
-                    "it",
+                    "%d runs: arrows%s choose one, Enter opens it, Esc ends the sweep",
                     sweep->count, across);
 }
 

@@ -32,7 +32,6 @@ bool act_pull_tip(explorer_model *model, explorer_view *view, explorer_input *in
     }
 
     // the run plays as long as the tip is held
-    session_forget_ghost(&model->session);
     *p = (tip_pull){.held = true,
                     .x = place.x,
                     .y = place.y,
@@ -99,7 +98,6 @@ void act_scrub(explorer_model *model, explorer_view *view, double time)
 {
     assert(isfinite(time));
     view->playback.playing = false;
-    session_forget_ghost(&model->session);
     session_seek(&model->session, time);
 }
 
@@ -146,7 +144,6 @@ bool act_advance(explorer_model *model, explorer_view *view, explorer_input *inp
 bool act_play(explorer_model *model, explorer_view *view, explorer_input *input)
 {
     session *s = &model->session;
-    session_forget_ghost(s);
     view->playback.playing = !view->playback.playing;
     const bool at_end = view->playback.playing && s->now >= session_end(s);
 

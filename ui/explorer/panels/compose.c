@@ -360,7 +360,7 @@ static void draw_hints(const explorer_view *view, layout *lay, screen *s)
         int rank;
     } hints[] = {{"play", "run/pause", 0},    {"step", "step", 3},
                  {"event", "event", 4},       {"speed", "speed", 7},
-                 {"edit", "change value", 5}, {"branch", "branch", 6},
+                 {"edit", "change value", 5}, {"branch", "keep run", 6},
                  {"compare", "compare", 8},   {"open", "open", 9},
                  {"save", "save", 10},        {"help", "help", 1},
                  {"quit", "quit", 2}};
@@ -518,7 +518,21 @@ static int rows_of_arm(int height)
     return rows;
 }
 
-// The arm with the curves below it on the left, the side panel on the right.
+// The rows that the side wants where it is beside the arm alone: the knobs, and what a
+// touch would bring; 0 of panels that take all that there are.
+static int rows_beside_arm(const explorer_model *model, const explorer_view *view,
+                           area side)
+{
+    const screen_size room = {side.width, side.height};
+    if (side.width == 0 || view->side.panel != PANEL_PARAMETERS) {
+        return 0;
+    }
+    return parameters_panel.rows(model, view, room) +
+           predictors_panel.rows(model, view, room);
+}
+
+// The arm with the curves below it on the left, the side panel on the right. On a tall
+// screen the side ends with the arm, and the curves have the whole width.
 static void draw_panels(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area body)
 {
@@ -530,17 +544,26 @@ static void draw_panels(const explorer_model *model, const explorer_view *view,
     if (arm_height > useful) {
         arm_height = useful;
     }
+    area at_side = {width, body.y, side, body.height};
+    const int beside = rows_beside_arm(model, view, at_side);
+    const bool wide = beside > 0 && beside <= body.height / 3;
+    if (wide) {
+        arm_height = at_side.height = beside;
+    }
     panel_draw(PANEL_ARM, model, view, lay, s, (area){body.x, body.y, width, arm_height});
 
     // on a narrow screen the side takes the place of the curves
-    const area below = {body.x, body.y + arm_height, width, body.height - arm_height};
+    area below = {body.x, body.y + arm_height, width, body.height - arm_height};
+    if (wide) {
+        below.width = s->width;
+    }
     if (side == 0 && view->side.in_front) {
         draw_side(model, view, lay, s, below);
         return;
     }
     panel_draw(PANEL_CURVES, model, view, lay, s, below);
     if (side > 0) {
-        draw_side(model, view, lay, s, (area){width, body.y, side, body.height});
+        draw_side(model, view, lay, s, at_side);
     }
 }
 

@@ -82,27 +82,12 @@ static bool point_at_labels(const explorer_model *model, explorer_view *view,
     return g->event.kind != POINTER_RELEASE;
 }
 
-// On the map of the whole run the visible part moves to the mouse.
-static bool point_at_map(const explorer_model *model, explorer_view *view,
-                         const panel_gesture *g)
-{
-    if (g->event.kind == POINTER_RELEASE) {
-        return false;
-    }
-    const double whole = model->session.effective.parameters.run.duration;
-    const double time = share_across(g->hit.area, g->event.x) * whole;
-    double from, to;
-    view_window(model, view, &from, &to);
-    act_pan_by(model, view, time - (from + to) / 2);
-    return true;
-}
-
 bool curves_point(explorer_model *model, explorer_view *view, explorer_input *input,
                   const panel_gesture *g)
 {
     const hit_part part = g->hit.part;
     if (pointer_wheel(g->event) != 0) {
-        if (part == PART_LANES || part == PART_MAP) {
+        if (part == PART_LANES) {
             return false;
         }
         if (part != PART_VIEW) {
@@ -126,8 +111,6 @@ bool curves_point(explorer_model *model, explorer_view *view, explorer_input *in
         return g->event.kind == POINTER_PRESS &&
                act_toggle_signal(view, input, g->hit.index / PANE_SIGNALS,
                                  g->hit.index % PANE_SIGNALS);
-    case PART_MAP:
-        return point_at_map(model, view, g);
     default:
         return point_at_labels(model, view, g);
     }

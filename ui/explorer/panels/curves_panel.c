@@ -297,7 +297,7 @@ static void set_look(const explorer_model *model, plot_frame *f, const pane *p,
         f->colour = run_ink(rank);
     } else if (run->kind == SHOWN_SWEPT && run->index == model->sweep.selected) {
         f->colour = INK_OTHER;
-    } else if (run->kind == SHOWN_SWEPT || run->kind == SHOWN_BEFORE) {
+    } else if (run->kind == SHOWN_SWEPT) {
         f->colour = INK_FRAME;
     } else if (run->kind == SHOWN_MEASURED && p->view != VIEW_RESIDUAL) {
         f->colour = INK_TEXT;
@@ -316,14 +316,14 @@ static bool is_in_fan(const lab_sweep *sweep, int index)
 }
 
 // A curve of a run: of the present one (`is_present`) what was seen of it, and after a
-// change dimly what is to come. While a value is adjusted all of it is shown.
+// change dimly what is to come.
 static void draw_curve(const explorer_model *model, plot_frame f, const trace *t,
                        int signal, const double *pairs, bool is_present)
 {
     const session *e = &model->session;
     const ink bright = f.colour;
     double until = f.to;
-    if (is_present && !e->has_ghost) {
+    if (is_present) {
         if (e->input_count > 0) {
             f.colour = INK_FRAME;
             plot_frame_signal(&f, t, signal, f.to, pairs);
@@ -559,7 +559,7 @@ static void draw_curves(const explorer_model *model, const explorer_view *view,
     enum { LEAST_PLOT = 9, LOW = 12 }; // width; rows that have few for a time axis
 
     // from below: the lanes, the time axis, the panes
-    const int lanes_height = lanes_rows(model, view, a.height);
+    const int lanes_height = lanes_rows(model, a.height);
     const int axis_height = a.height < LOW ? 1 : 2;
     const int panes_height = a.height - lanes_height - axis_height;
     const area panes = {a.x, a.y, a.width, panes_height};

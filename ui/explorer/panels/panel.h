@@ -79,7 +79,6 @@ typedef enum hit_part {
     PART_TIME_AXIS, // below curves
     PART_VIEW,      // a pane that is not over time; index: the pane
     PART_LANES,     // bands below that
-    PART_MAP,       // of the whole run
     PART_HINT       // of no panel; index: the command that a click carries out
 } hit_part;
 
@@ -295,11 +294,10 @@ bool draw_pane_view(const explorer_model *model, const explorer_view *view, scre
                     const pane *p, area a, value_range *axis);
 
 // --- lanes -----------------------------------------------------------------------------
-// Below the curves, on the same time axis: the modes of the law. Above them, if the
-// curves show only a part of the run, a map of the whole.
+// Below the curves, on the same time axis: the modes of the law.
 
 // The number of rows of these below curves of a given height.
-int lanes_rows(const explorer_model *model, const explorer_view *view, int height);
+int lanes_rows(const explorer_model *model, int height);
 
 // Draws the lanes in the number of rows given by lanes_rows; the area has the same
 // columns as the curves and their labels.

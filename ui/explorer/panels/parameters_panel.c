@@ -152,10 +152,6 @@ static void draw_parameter(const explorer_model *model, const explorer_view *vie
     // a slider, and what it leaves
     const bool is_knob = shows_knobs(view);
     const area slider = slider_area(a, is_knob);
-    int room = a.width;
-    if (slider.width > 0) {
-        room -= slider.width + 1;
-    }
     if (has_slider && slider.width > 0 && !inert) {
         draw_track(lay, s, slider, &k);
     }
@@ -168,8 +164,17 @@ static void draw_parameter(const explorer_model *model, const explorer_view *vie
         parameter_format(p, parameter, value, sizeof value);
     }
 
-    // the value at the end, and before it the name
+    // it ends where sliders begin, but a long one without a slider where the line ends
     const char *leaf = strchr(info->path, '.') + 1;
+    int room = a.width;
+    if (slider.width > 0) {
+        room -= slider.width + 1;
+    }
+    if (!has_slider && (int)strlen(leaf) + 3 + text_cells(value) > room) {
+        room = a.width;
+    }
+
+    // the value at the end, and before it the name
     const int length =
         fit_value(shown, sizeof shown, room - (int)strlen(leaf) - 3, value, info->unit);
     const int value_at = room - length;
@@ -319,6 +324,22 @@ static bool point_at_parameters(explorer_model *model, explorer_view *view,
     return true;
 }
 
+// The frame, the knobs and the slider of the selected one; all parameters want all rows
+// that there are.
+static int parameters_rows(const explorer_model *model, const explorer_view *view,
+                           screen_size body)
+{
+    (void)model;
+    enum { AROUND = 3 };
+    parameter_line lines[PARAMETER_LINES];
+    int selected;
+    if (!shows_knobs(view)) {
+        return body.height;
+    }
+    return view_parameter_lines(view, lines, &selected) + AROUND;
+}
+
 const panel parameters_panel = {.name = "parameters",
+                                .rows = parameters_rows,
                                 .draw = draw_parameter_list,
                                 .point = point_at_parameters};

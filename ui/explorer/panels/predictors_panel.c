@@ -100,9 +100,10 @@ static prediction largest_force_after(const session *s, size_t free)
 
 enum { ROWS = 4, WIDE = 40 }; // of the panel; width from which on there is more [cells]
 
-// Draws a prediction into the first row of an area, with its delay where that has room;
-// returns what is below.
-static area draw_prediction(screen *s, area a, const char *label, const prediction *p)
+// Draws a prediction and what follows it into the first row of an area, with its delay
+// where that has room; returns what is below.
+static area draw_prediction(screen *s, area a, const char *label, const prediction *p,
+                            const char *rest)
 {
     char delay[24] = "";
     int decimals = 2;
@@ -112,7 +113,7 @@ static area draw_prediction(screen *s, area a, const char *label, const predicti
             snprintf(delay, sizeof delay, " in %.0f ms", 1e3 * p->delay);
         }
     }
-    area_print(s, a, INK_TEXT, "%s %.*f N%s", label, decimals, p->force, delay);
+    area_print(s, a, INK_TEXT, "%s %.*f N%s%s", label, decimals, p->force, delay, rest);
     return area_below(a, 1);
 }
 
@@ -140,7 +141,7 @@ static void draw_answers(const explorer_model *model, const explorer_view *view,
             continue;
         }
         any = true;
-        a = draw_prediction(s, a, answer.short_label, &answer.prediction);
+        a = draw_prediction(s, a, answer.short_label, &answer.prediction, "");
     }
     if (!any) {
         area_text(s, a, INK_DIM, reason);
@@ -167,7 +168,7 @@ static void draw_predictors(const explorer_model *model, const explorer_view *vi
     area line = {a.x + 2, a.y, a.width - 3, 1};
     if (session_sample(e)->contact != 0) {
         const prediction largest = largest_force_after(e, r);
-        line = draw_prediction(s, line, "touched, came", &largest);
+        line = draw_prediction(s, line, "touched:", &largest, ", predicted:");
     } else {
         area_text(s, line, INK_DIM, "touching now would bring");
         line = area_below(line, 1);

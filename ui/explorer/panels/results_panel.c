@@ -122,7 +122,7 @@ typedef struct result_run {
 } result_run;
 
 // The runs in the order in which they are listed, the present one and the reference
-// first; returns how many.
+// first, in one row as long as both are the same; returns how many.
 static int list_runs(const explorer_model *model, result_run runs[MOST_RUNS])
 {
     const session *s = &model->session;
@@ -130,8 +130,10 @@ static int list_runs(const explorer_model *model, result_run runs[MOST_RUNS])
     const reference_run *o = &model->opened_run;
     const int baseline = s->has_other ? pins->baseline : -1;
     int count = 0;
-    runs[count++] = (result_run){"", &s->run.summary, 1, -1, false};
-    if (baseline >= 0) {
+    const pinned_run *same = model_kept_run(model);
+    const char *name = same != NULL ? same->name : "";
+    runs[count++] = (result_run){name, &s->run.summary, 1, -1, same != NULL};
+    if (baseline >= 0 && same == NULL) {
         const pinned_run *p = &pins->runs[baseline];
         runs[count++] = (result_run){p->name, &p->run.summary,
                                      model_reference_rank(model), baseline, true};
@@ -202,7 +204,7 @@ static void draw_name(const explorer_model *model, screen *s, area line,
     char name[RUN_NAME];
     const bool hidden = run->pinned >= 0 && model->pinned.runs[run->pinned].hidden;
     snprintf(name, sizeof name, "%s", run->name);
-    if (run->rank == 1) {
+    if (run->name[0] == '\0') {
         run_list_describe(&model->session, name, sizeof name);
     }
     for (int i = 0; i < SAMPLE && model_shows_others(model) && !hidden; i++) {
@@ -219,8 +221,14 @@ static void draw_name(const explorer_model *model, screen *s, area line,
 static int rows_of_runs(const explorer_model *model)
 {
     result_run runs[MOST_RUNS];
-    const int count = list_runs(model, runs), data = model->measured.row_count > 0;
-    return count + data > 2 ? count + data : 2;
+    int count = list_runs(model, runs);
+    if (model_kept_run(model) != NULL) {
+        count++;
+    }
+    if (model->measured.row_count > 0) {
+        count++;
+    }
+    return count > 2 ? count : 2;
 }
 
 // The heading, the runs and why; a quarter of the screen at most, a little more of a tall

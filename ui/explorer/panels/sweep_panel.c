@@ -206,16 +206,29 @@ static void draw_map_selection(screen *s, area line, const lab_sweep *sweep)
     }
 }
 
-// The cells of a map, `width` x `height` characters each, the first parameter across and
-// the second up.
+// The first line of a map's cells, counted from above, that is shown where there is room
+// for so many: the one that lets the selected run be seen.
+static int first_map_line(const lab_sweep *sweep, int shown)
+{
+    const int across = (int)sweep->axis.count, up = (int)sweep->second.count;
+    return draw_first_line(up - 1 - sweep->selected / across, up, shown);
+}
+
+// As many lines of a map's cells as there are or as an area has room for, `width` x
+// `height` characters each, the first parameter across and the second up.
 static void draw_map_cells(const lab_sweep *sweep, layout *lay, screen *s, area a,
                            int width, int height, value_range range)
 {
     const int across = (int)sweep->axis.count, up = (int)sweep->second.count;
-    const area map = {a.x, a.y, across * width, up * height};
+    const int shown = a.height / height < up ? a.height / height : up;
+    const int first = first_map_line(sweep, shown);
+    const area map = {a.x, a.y, across * width, shown * height};
     layout_add_hit(lay, (hit_area){PANEL_SWEEP, PART_CELLS, height, map});
     for (int i = 0; i < sweep->count; i++) {
-        const int column = i % across, row = up - 1 - i / across;
+        const int column = i % across, row = up - 1 - i / across - first;
+        if (row < 0 || row >= shown) {
+            continue;
+        }
         const area place = {a.x + column * width, a.y + row * height, width, height};
         const double value = lab_sweep_metric(sweep, i, sweep->metric);
         const double share = (value - range.low) / (range.high - range.low);
@@ -230,17 +243,20 @@ static void draw_sweep_map(const explorer_model *model, layout *lay, screen *s, 
     const lab_sweep *sweep = &model->sweep;
     const int across = (int)sweep->axis.count, up = (int)sweep->second.count;
     const area words = area_below(a, a.height - WORDS);
+    const area map = {a.x, a.y, a.width, a.height - WORDS};
     const int width = a.width / across;
-    int height = (a.height - WORDS) / up;
+    int height = map.height / up;
     if (height > MOST_CELL_HEIGHT) {
         height = MOST_CELL_HEIGHT;
+    } else if (height < 1) {
+        height = 1;
     }
 
     value_range range;
-    if (width < 1 || height < 1) {
-        area_print(s, a, INK_DIM, "a map of %d x %d has no room here", across, up);
+    if (width < 1 || map.height < 1) {
+        area_print(s, a, INK_DIM, "%d columns have no room", across);
     } else if (range_of_metric(sweep, &range)) {
-        draw_map_cells(sweep, lay, s, a, width, height, range);
+        draw_map_cells(sweep, lay, s, map, width, height, range);
         area_print(s, area_row(words, 1), INK_DIM, "blank %s, dark %s",
                    draw_number(range.low).text, draw_number(range.high).text);
     } else {
@@ -319,9 +335,11 @@ static int run_in_map(const lab_sweep *sweep, const panel_gesture *g)
     if (!lab_sweep_is_map(sweep) || a.width < across) {
         return -1;
     }
+    const int shown = a.height / g->hit.index, up = (int)sweep->second.count;
+    const int below = up - first_map_line(sweep, shown) - shown;
     const int column = (g->event.x - a.x) / (a.width / across);
     const int row = (lowest - g->event.y) / g->hit.index;
-    return row * across + column;
+    return (row + below) * across + column;
 }
 
 // A click selects a run, the wheel goes through them.

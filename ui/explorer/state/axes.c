@@ -144,7 +144,8 @@ static void update_extremes(extremes *e, const shown_run *run, int signal)
 // --- axes of values --------------------------------------------------------------------
 
 // Whether a signal of a pane counts for its range. Beside the force readings do not: they
-// answer an impulse with a spike that would flatten all else. Of measured data all do.
+// answer an impulse with a spike that would flatten all else, those measured, too, if the
+// force itself was.
 static bool signal_counts(const pane *p, int k, const shown_run *run)
 {
     const int force = SIGNAL_INDEX(force);
@@ -152,7 +153,8 @@ static bool signal_counts(const pane *p, int k, const shown_run *run)
     if (p->hidden >> k & 1) {
         return false;
     }
-    return !has_force || p->signals[k] == force || run->kind == SHOWN_MEASURED;
+    return !has_force || p->signals[k] == force ||
+           (run->kind == SHOWN_MEASURED && !trace_has(run->trace, force));
 }
 
 // The range of a pane's signals in one of the runs shown, between two instants.

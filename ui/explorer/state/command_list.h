@@ -160,8 +160,6 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
       "runs, changes, pins and panes, to go on with another day")                        \
     X("", "copy", act_copy(model, view, input, argument), "", "value|run|screen",        \
       "to the terminal's clipboard: value, command line, screen")                        \
-    X("", "scene", act_scene(model, input, argument), "S", "FILE.png",                   \
-      "picture of the arm at this instant")                                              \
     X("The lab", "palette", act_palette(view, input, argument), "C-p", "[WORDS]",        \
       "find anything by words: commands, values, scenarios")                             \
     X("", "glyphs", act_look(view, input, "glyphs", argument), "",                       \

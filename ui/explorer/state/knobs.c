@@ -64,13 +64,14 @@ static void add_knob(const scenario *s, parameter_list *list, int most, int para
     }
 }
 
-// Adds what the scenario gives, as far as a number or a word can be turned.
-static void add_given(const scenario *s, parameter_list *list, int most)
+// Adds what a scenario gives, as far as a number or a word can be turned in a run of it.
+static void add_given(const scenario *s, const scenario *run, parameter_list *list,
+                      int most)
 {
     for (int i = 0; i < parameter_count; i++) {
         const bool given = s->parameters.set[i] != 0;
         if (given && !parameter_is_text(&parameter_table[i]) && !is_about_computing(i)) {
-            add_knob(s, list, most, i);
+            add_knob(run, list, most, i);
         }
     }
 }
@@ -89,7 +90,19 @@ static void add_of_law(const scenario *s, parameter_list *list, int most)
     }
 }
 
-void model_choose_knobs(const explorer_model *model, parameter_list *list)
+// Whether the selected parameter is among the knobs.
+static bool knob_is_selected(const parameter_list *list)
+{
+    for (int i = 0; i < list->knob_count; i++) {
+        if (list->knobs[i] == list->parameter) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Fills in the knobs of a run.
+static void find_knobs(const explorer_model *model, parameter_list *list)
 {
     const int usual[] = {PARAMETER_INDEX(motor.voltage),   PARAMETER_INDEX(arm.k2),
                          PARAMETER_INDEX(control.law),     PARAMETER_INDEX(wall.angle),
@@ -112,7 +125,7 @@ void model_choose_knobs(const explorer_model *model, parameter_list *list)
 
     // what was changed keeps its place behind what is there before any change
     enum { BEFORE_CHANGES = 7 };
-    add_given(&s->base, list, BEFORE_CHANGES - 3);
+    add_given(&s->base, run, list, BEFORE_CHANGES - 3);
     add_of_law(run, list, BEFORE_CHANGES - 2);
     for (int i = 0; i < USUAL; i++) {
         add_knob(run, list, BEFORE_CHANGES, usual[i]);
@@ -121,5 +134,14 @@ void model_choose_knobs(const explorer_model *model, parameter_list *list)
         if (s->inputs[i].kind != SESSION_INPUT_PUSH) {
             add_knob(run, list, MOST_KNOBS, s->inputs[i].parameter);
         }
+    }
+}
+
+void model_choose_knobs(const explorer_model *model, parameter_list *list)
+{
+    const bool selected = knob_is_selected(list);
+    find_knobs(model, list);
+    if (selected && !knob_is_selected(list) && list->knob_count > 0) {
+        list->parameter = list->knobs[0];
     }
 }

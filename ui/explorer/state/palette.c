@@ -143,7 +143,6 @@ const char *synonyms_of(const char *name)
     static const struct {
         const char *name, *words;
     } table[] = {{"save", "export figure picture image plot recipe csv"},
-                 {"scene", "figure picture image 3d"},
                  {"editor", "edit source yaml vim"},
                  {"changes", "history list edits"},
                  {"undo", "back revert history"},

@@ -95,11 +95,7 @@ int model_runs(const explorer_model *model, const pane *p, shown_run runs[SHOWN_
             (shown_run){SHOWN_SWEPT, i, &r->run.trace, id_of(ID_SWEPT, r->id)};
     }
 
-    // the one before an adjustment, and what was measured
-    if (s->has_ghost) {
-        runs[count++] =
-            (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, model_run_id(model)};
-    }
+    // what was measured
     if (model->measured.row_count > 0) {
         runs[count++] = (shown_run){SHOWN_MEASURED, 0, &model->measured,
                                     id_of(ID_MEASURED, model->measured_id)};
@@ -122,6 +118,17 @@ int shown_signal(const shown_run *run, const pane *p, int k)
         }
     }
     return reading;
+}
+
+const pinned_run *model_kept_run(const explorer_model *model)
+{
+    const session *s = &model->session;
+    const run_list *pins = &model->pinned;
+    if (!s->has_other || pins->baseline < 0 ||
+        !run_origin_is_of(&pins->runs[pins->baseline].from, s)) {
+        return NULL;
+    }
+    return &pins->runs[pins->baseline];
 }
 
 int model_run_count(const explorer_model *model)

@@ -283,9 +283,9 @@ int model_levels(const explorer_model *model, const pane *p,
         const value_range band = view_force_band(model);
         if (isfinite(band.low) && isfinite(band.high)) {
             const double middle = (band.low + band.high) / 2;
-            levels[count++] = (shown_level){"command", middle, first};
-            levels[count++] = (shown_level){"-5 %", band.low, first};
-            levels[count++] = (shown_level){"+5 %", band.high, first};
+            levels[count++] = (shown_level){"command +/-5 %", band.high, first};
+            levels[count++] = (shown_level){"", middle, first};
+            levels[count++] = (shown_level){"", band.low, first};
         }
     }
 

@@ -16,9 +16,8 @@
 enum {
     SIDE_WIDTH = 72
 }; // least width of a screen with the side panels next to the curves [cells]
-// The present run, the run as opened, pinned runs, runs of a sweep, the run before the
-// adjustment of a value, and measured data.
-enum { SHOWN_RUNS = 2 + PINNED_RUNS + SWEPT_RUNS + 2 };
+// The present run, the run as opened, pinned runs, runs of a sweep, and measured data.
+enum { SHOWN_RUNS = 2 + PINNED_RUNS + SWEPT_RUNS + 1 };
 
 // A run with visible curves.
 typedef struct shown_run {
@@ -28,7 +27,6 @@ typedef struct shown_run {
         SHOWN_OPENED,
         SHOWN_PINNED,
         SHOWN_SWEPT,
-        SHOWN_BEFORE,
         SHOWN_MEASURED
     } kind;
     int index; // among the runs of its kind
@@ -207,6 +205,9 @@ bool model_subtracts(const explorer_model *model);
 // are for comparison.
 int model_runs(const explorer_model *model, const pane *p, shown_run runs[SHOWN_RUNS]);
 int model_run_count(const explorer_model *model);
+// The pinned reference as long as it is the present run itself, as nothing has changed
+// since it was kept; else NULL.
+const pinned_run *model_kept_run(const explorer_model *model);
 // What a run shows as the k-th signal of a pane: that, but of measured data without a
 // force what a sensor read in its place.
 int shown_signal(const shown_run *run, const pane *p, int k);
