@@ -13,9 +13,9 @@
 #define TRAVEL_TIME 0.05 // in which the arm takes up a wanted speed [s],
 #define LAND_TIME   0.02 // and after a bounce [s]
 #define SOFT_SPEED  0.2  // of a soft touch, for every newton wanted [rad/s/N],
-#define MOST_SPEED  0.45 // at most [rad/s],
+#define MOST_SPEED  0.45 // with two links at most [rad/s],
 #define LEAST_SPEED 0.12 // and no less, so as to come in time [rad/s],
-#define LEAST_LINKS 0.32 // least speed with more than two links [rad/s]
+#define LEAST_LINKS 0.32 // least speed with more than two modes [rad/s]
 // share of the effort that damping the tip may cost on a wall that gives
 #define SOFT_EFFORT 0.25
 // least excess of p h over 1 for which the divergence of the force is computed
@@ -123,12 +123,17 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
     }
 
     // A soft touch keeps a wall from throwing the tip back; but an arm of more than two
-    // links vibrates off the wall under the small force that a soft touch begins with
+    // modes vibrates off the wall under the small force that a soft touch begins with
     if (arm->free.count > 2) {
         d->arrival_speed = fmin(d->top_speed, fmax(d->touch_speed, LEAST_LINKS));
     } else {
-        d->arrival_speed = fmin(fmin(d->touch_speed, MOST_SPEED),
-                                fmax(LEAST_SPEED, SOFT_SPEED * task->force));
+        d->arrival_speed =
+            fmin(d->touch_speed, fmax(LEAST_SPEED, SOFT_SPEED * task->force));
+    }
+
+    // two links are thrown back by a fast touch, behind a hub that gives, too
+    if (setup->links <= 2) {
+        d->arrival_speed = fmin(d->arrival_speed, MOST_SPEED);
     }
 
     // changes of speed take a period of the first vibration, with edges of the second's
