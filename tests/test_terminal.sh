@@ -335,6 +335,32 @@ colours "COLORTERM=truecolor TERM=linux" "" "\[3[1-7]m" "38;[25];"
 colours "-u TMUX COLORTERM=truecolor TERM=screen" "" "\[3[1-7]m" "38;[25];"
 colours "COLORTERM=truecolor TERM=xterm" "" "38;2;" "38;5;"
 colours "COLORTERM=truecolor COLORFGBG=\"0;15\"" "" "38;2;175;70;0m" "38;2;255;150;40m"
+
+# on a large screen playing takes at most 30 kB a second, and what was written change by change looks as
+# what is drawn at once
+mux resize-window -x 200 -y 60
+mux send-keys "export COLORTERM=truecolor; clear; lab" Enter
+await "Space run/pause"
+mux send-keys Space ":seek 0.1" Enter
+await "t 0.10000 s"
+mux pipe-pane "cat >$folder/played"
+mux send-keys Space
+sleep 3
+mux send-keys Space
+mux pipe-pane
+[ "$(stat -c %s "$folder/played")" -lt 95000 ] || fail "playing takes $(stat -c %s "$folder/played") bytes in 3 s"
+mux send-keys ":seek 0.25" Enter Enter "2" Enter End Escape
+await "t 1.00000 s"
+sleep 0.5
+picture >"$folder/by_changes"
+mux send-keys C-l
+sleep 0.5
+picture >"$folder/at_once"
+cmp "$folder/by_changes" "$folder/at_once" || fail "changes leave another picture than drawing at once"
+mux send-keys ":quit!" Enter
+await "ready>"
+mux resize-window -x 120 -y 40
+
 # resized, suspended and taken up again in such colours: the picture is whole
 mux send-keys "export COLORTERM=truecolor; clear; lab" Enter
 await "Space run/pause"

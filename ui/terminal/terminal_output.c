@@ -133,10 +133,25 @@ static void put_coloured_ink(FILE *stream, ink i, colour_theme theme, colour_dep
     }
 }
 
-// Selects an ink in a theme's colours, or in the ways of a terminal without colours.
-static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
+// Whether an ink is a colour and nothing else, so that another one can take its place.
+static bool is_only_colour(ink i, colour_theme theme, colour_depth depth)
 {
-    put_capability(stream, "sgr0", 0);
+    rgb c;
+    const bool more =
+        i == INK_SELECTED || i == INK_TITLE || i == INK_EVENT || i == INK_WARNING;
+    return theme != COLOURS_MONO && (depth == DEPTH_TRUE || depth == DEPTH_256) &&
+           !more && ink_rgb(theme, i, &c);
+}
+
+// Selects an ink in a theme's colours, or in the ways of a terminal without colours,
+// after another one (-1: none).
+static void put_ink(FILE *stream, int before, ink i, colour_theme theme,
+                    colour_depth depth)
+{
+    if (before < 0 || !is_only_colour((ink)before, theme, depth) ||
+        !is_only_colour(i, theme, depth)) {
+        put_capability(stream, "sgr0", 0);
+    }
     if (theme == COLOURS_MONO || depth == DEPTH_MONO) {
         put_plain_ink(stream, i);
     } else {
@@ -148,6 +163,14 @@ static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
 static bool is_blank_cell(cell c)
 {
     return (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
+}
+
+// Whether a blank looks the same in both inks (-1: none): it shows only what is reversed
+// or underlined.
+static bool blank_looks_alike(int ink_set, ink wanted)
+{
+    return wanted != INK_SELECTED && wanted != INK_WARNING && ink_set != INK_SELECTED &&
+           ink_set != INK_WARNING;
 }
 
 // What takes no cell or two would break the grid.
@@ -188,8 +211,9 @@ static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool wh
                 sequences = stream;
                 tputs(tparm(place, (long)y, (long)x), 1, put_byte);
             }
-            if (ink_set != (int)c.ink) {
-                put_ink(stream, c.ink, tty.theme, tty.depth);
+            const bool alike = c.glyph == ' ' && blank_looks_alike(ink_set, c.ink);
+            if (ink_set != (int)c.ink && !alike) {
+                put_ink(stream, ink_set, c.ink, tty.theme, tty.depth);
                 ink_set = (int)c.ink;
             }
             put_glyph(stream, glyph_in_set(c.glyph, glyphs));
