@@ -186,6 +186,25 @@ TEST(shares_count_cases)
     check_close(none.high, z2 / (20 + z2), 1e-14);
 }
 
+// Cases with first contact up to 2.5 times as late as open-loop's count apart: those
+// which keep all other bounds, told here by the quantities themselves. Of these cases one
+// comes later than 1.5 times.
+TEST(later_touches_count_apart)
+{
+    KEPT_SCENARIO(s) = shipped("compare/observer");
+    SCOPED(law_exam_finish) law_exam e = examined(&s, 4, 4150);
+    size_t later = 0;
+    for (size_t i = 0; i < e.asked.cases; i++) {
+        const exam_verdict *v = law_exam_verdict(&e, 0, 0, i);
+        const double most_settling = v->separations > 0 ? 0.6 : 0.3;
+        later += v->overshoot <= 30 && v->settling <= most_settling &&
+                 fabs(v->error) <= 5 && v->late <= 2.5;
+    }
+    assert_int_equal(law_exam_share_later(&e, 0, 0).within, later);
+    assert_true(law_exam_share(&e, 0, 0, -1).within < later);
+    assert_int_equal(law_exam_share_later(&e, 0, 0).cases, 4);
+}
+
 static json_t *member_of_result(json_t *whole, size_t row, const char *key)
 {
     json_t *results = json_object_get(whole, "results");

@@ -174,9 +174,11 @@ static exam_verdict judge_law_run(const drawn_case *c, double force, double open
         [EXAM_RUN] = s->status != STATUS_OK || s->inaccurate ? HUGE_VAL : 0,
     };
     v.within = true;
+    v.within_later = v.late <= EXAM_LATER;
     for (int bound = 0; bound < EXAM_BOUNDS; bound++) {
         v.missed[bound] = !(ratios[bound] <= 1);
         v.within = v.within && !v.missed[bound];
+        v.within_later = v.within_later && (bound == EXAM_LATENESS || !v.missed[bound]);
         v.worst = isnan(ratios[bound]) ? HUGE_VAL : fmax(v.worst, ratios[bound]);
     }
     return v;
@@ -291,20 +293,13 @@ static bool has_error(const drawn_case *c, int kind)
     return has;
 }
 
-exam_share law_exam_share(const law_exam *e, int law, int force, int kind)
+// Wilson's interval, which holds for shares near 0 and 1, too.
+static exam_share share_of(size_t cases, size_t within)
 {
-    exam_share s = {.share = (double)NAN, .low = (double)NAN, .high = (double)NAN};
-    for (size_t i = 0; i < e->asked.cases; i++) {
-        if (has_error(&e->cases[i], kind)) {
-            s.cases++;
-            s.within += law_exam_verdict(e, law, force, i)->within;
-        }
-    }
+    exam_share s = {cases, within, (double)NAN, (double)NAN, (double)NAN};
     if (s.cases == 0) {
         return s;
     }
-
-    // Wilson's interval, which holds for shares near 0 and 1, too
     const double z = 1.959963984540054, n = (double)s.cases;
     s.share = (double)s.within / n;
     const double middle = (s.share + z * z / (2 * n)) / (1 + z * z / n);
@@ -313,4 +308,25 @@ exam_share law_exam_share(const law_exam *e, int law, int force, int kind)
     s.low = fmax(middle - half, 0);
     s.high = middle + half;
     return s;
+}
+
+exam_share law_exam_share(const law_exam *e, int law, int force, int kind)
+{
+    size_t cases = 0, within = 0;
+    for (size_t i = 0; i < e->asked.cases; i++) {
+        if (has_error(&e->cases[i], kind)) {
+            cases++;
+            within += law_exam_verdict(e, law, force, i)->within;
+        }
+    }
+    return share_of(cases, within);
+}
+
+exam_share law_exam_share_later(const law_exam *e, int law, int force)
+{
+    size_t within = 0;
+    for (size_t i = 0; i < e->asked.cases; i++) {
+        within += law_exam_verdict(e, law, force, i)->within_later;
+    }
+    return share_of(e->asked.cases, within);
 }

@@ -16,6 +16,9 @@
 
 #include "src/study/robust/law_errors.h"
 
+// Open-loop's time of first contact times this is the bound of a law that may come later.
+#define EXAM_LATER 2.5
+
 enum { EXAM_MOST_LAWS = 8, EXAM_MOST_FORCES = 8, EXAM_MOST_CASES = 100000 };
 
 typedef struct exam_request {
@@ -46,7 +49,8 @@ typedef struct exam_verdict {
     double separations; // from the wall
     double late;        // first contact over open-loop's
     bool missed[EXAM_BOUNDS];
-    bool within;  // all of the bounds
+    bool within;       // all of the bounds,
+    bool within_later; // and these with first contact up to EXAM_LATER times as late
     double worst; // largest ratio of a quantity to its bound, HUGE_VAL where it failed
 } exam_verdict;
 
@@ -83,6 +87,9 @@ typedef struct exam_share {
 
 // Of the cases with a kind of error; kind -1: of all.
 exam_share law_exam_share(const law_exam *e, int law, int force, int kind);
+
+// Of all cases, with first contact up to EXAM_LATER times as late as open-loop's.
+exam_share law_exam_share_later(const law_exam *e, int law, int force);
 
 // The rows of another exam over the same cases, as law_exam_json wrote them.
 typedef struct exam_rows {

@@ -197,16 +197,25 @@ static void print_forces(FILE *stream, const law_exam *e, int width)
     fputc('\n', stream);
 }
 
-// A law's shares of all cases, a column for each force.
+static void print_share(FILE *stream, exam_share s)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.1f (%.1f to %.1f)", 100 * s.share, 100 * s.low,
+             100 * s.high);
+    fprintf(stream, "%24s", text);
+}
+
+// A law's shares of all cases, a column for each force, and those where it may touch the
+// wall later.
 static void print_shares(FILE *stream, const law_exam *e, int law)
 {
     fprintf(stream, "  %-20s", law_word(e, law));
     for (int k = 0; k < e->asked.force_count; k++) {
-        const exam_share s = law_exam_share(e, law, k, -1);
-        char text[32];
-        snprintf(text, sizeof text, "%.1f (%.1f to %.1f)", 100 * s.share, 100 * s.low,
-                 100 * s.high);
-        fprintf(stream, "%24s", text);
+        print_share(stream, law_exam_share(e, law, k, -1));
+    }
+    fprintf(stream, "\n    %g times as late", EXAM_LATER);
+    for (int k = 0; k < e->asked.force_count; k++) {
+        print_share(stream, law_exam_share_later(e, law, k));
     }
     fputc('\n', stream);
 }
@@ -415,11 +424,17 @@ static json_t *exam_result_json(const law_exam *e, int law, int force,
 {
     const double at = e->asked.forces[force];
     const exam_share all = law_exam_share(e, law, force, -1);
+    const exam_share later = law_exam_share_later(e, law, force);
     json_t *result =
         json_of("law:t force_N:n within:i share:n low:n high:n missed:o "
                 "kinds:o",
                 law_word(e, law), at, (int)all.within, all.share, all.low, all.high,
                 missed_json(e, law, force), kinds_json(e, law, force));
+
+    // with first contact as late as it may be at most
+    json_put(result, "later",
+             json_of("late:n within:i share:n low:n high:n", EXAM_LATER,
+                     (int)later.within, later.share, later.low, later.high));
 
     // beside what there was before, and the first law
     json_t *paired = json_array();
