@@ -156,8 +156,12 @@ TEST(what_no_run_takes_is_refused_by_its_axis)
     // a row in which it idles says so, the next one does not
     SWEPT(s, SWEEP_GRID, 0, "wall.stiffness=1000,2000",
           "wall.contact=rigid,kelvin-voigt");
-    assert_non_null(sweep_idle(&s, 0, 0));
-    assert_null(sweep_idle(&s, 1, 0));
+    const char *why[SWEEP_MOST_AXES];
+    assert_true(sweep_idle(&s, 0, why));
+    assert_non_null(why[0]);
+    assert_null(why[1]);
+    assert_false(sweep_idle(&s, 1, why));
+    assert_null(why[0]);
 }
 
 TEST(a_latin_hypercube_meets_every_part_of_every_range_once)

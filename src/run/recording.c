@@ -43,10 +43,11 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
                        run_result *result, fault *f)
 {
     assert(options->monitor == NULL || options->abandon == NULL);
-    *r = (recording){.scenario = s,
-                     .result = result,
-                     .options = options,
-                     .now = s->parameters};
+    memset(r, 0, offsetof(recording, now)); // the parameters behind it are copied
+    r->scenario = s;
+    r->result = result;
+    r->options = options;
+    r->now = s->parameters;
     if (!options->untimed) {
         r->begun_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
         r->begun_at = clock_seconds(CLOCK_MONOTONIC);

@@ -68,7 +68,6 @@ typedef struct recording {
     const scenario *scenario;
     const run_options *options;
     run_result *result;
-    parameters now; // parameters as changed by the script so far
     recording_state state;
     double row_intervals[ROW_GRIDS]; // [s]; HUGE_VAL: no row after the first
     double row_tolerance; // how far apart instants of the grids may lie that are one [s]
@@ -77,6 +76,7 @@ typedef struct recording {
     shown_sample shown;         // of the rig, in rows
     double begun_cpu, begun_at; // by the thread's clock and the machine's [s]
     stop_request stop;          // where the run is to end
+    parameters now;             // as changed by the script so far
 } recording;
 
 // Most rows that a run of which `expected` are expected reserves address space for.

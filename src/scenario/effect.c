@@ -144,6 +144,10 @@ static bool others_at_once(const scenario *s, int i)
 const char *effect_none_from(const scenario *s, int parameter, int first)
 {
     assert(parameter >= 0 && parameter < parameter_count && first < s->action_count);
+    if (s->action_count == 0) {
+        return inert_with(s, &s->parameters, parameter);
+    }
+
     const char *why = "the run has ended";
     if (first < 0) {
         why = "the script gives it another value at once";

@@ -119,9 +119,7 @@ static status assign(parameters *p, const char *assignment, fault *f)
     return parameter_set_text(p, index, value, f);
 }
 
-// Resolves the scenario's changed parameters and checks that its script is valid with
-// them.
-static status resolve_changed(scenario *s, fault *f)
+status scenario_resolve(scenario *s, fault *f)
 {
     // the parameters, and the locks and timing that the script sets
     parameters *p = &s->parameters;
@@ -151,7 +149,7 @@ status scenario_take_parameters(scenario *s, const parameters *changed, fault *f
 {
     const parameters before = s->parameters;
     s->parameters = *changed;
-    const status failed = resolve_changed(s, f);
+    const status failed = scenario_resolve(s, f);
     if (failed != STATUS_OK) {
         s->parameters = before;
     }
@@ -161,16 +159,16 @@ status scenario_take_parameters(scenario *s, const parameters *changed, fault *f
 status scenario_with(const scenario *base, const parameter_change *changes, size_t count,
                      scenario *changed, fault *f)
 {
-    parameters p = base->parameters;
     *changed = *base;
+    parameters *p = &changed->parameters;
     for (const parameter_change *c = changes; c < changes + count; c++) {
         if (c->text != NULL) {
-            TRY(parameter_set_text(&p, c->parameter, c->text, f));
+            TRY(parameter_set_text(p, c->parameter, c->text, f));
         } else {
-            TRY(parameter_set_number(&p, c->parameter, c->number, f));
+            TRY(parameter_set_number(p, c->parameter, c->number, f));
         }
     }
-    return scenario_take_parameters(changed, &p, f);
+    return scenario_resolve(changed, f);
 }
 
 // Applies all assignments at once: each is read, then all are resolved together. If that

@@ -207,8 +207,12 @@ void scenario_write(FILE *stream, const scenario *s);
 // The same as a text, to be freed; NULL, noted (text_stream.h), without memory.
 char *scenario_as_text(const scenario *s);
 
-// Gives the scenario other parameters, changed but not yet resolved: resolves them and
-// checks that its script goes with them. If that fails nothing changes and f says why.
+// Resolves the scenario's parameters, some of which were changed, and checks that its
+// script goes with them. If that fails they are of no use, and f says why.
+status scenario_resolve(scenario *s, fault *f);
+
+// Gives the scenario other parameters, changed but not yet resolved, and resolves them.
+// If that fails nothing changes and f says why.
 status scenario_take_parameters(scenario *s, const parameters *changed, fault *f);
 
 // One parameter that changes: to a text, or to a number where that is NULL.

@@ -244,21 +244,28 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
     return code;
 }
 
-const char *sweep_idle(const sweep *s, size_t run, int axis)
+bool sweep_idle(const sweep *s, size_t run, const char *why[SWEEP_MOST_AXES])
 {
     double values[SWEEP_MOST_AXES];
     scenario derived;
     for (int i = 0; i < s->axis_count; i++) {
+        why[i] = NULL;
         values[i] = sweep_value(s, run, i);
         if (isnan(values[i])) {
             values[i] = sweep_axis_value_at(&s->axes[i], SOME_SHARE);
         }
     }
-    if (sweep_axes_scenario(s->axes, s->axis_count, values, s->base, &derived, NULL) ==
+    if (sweep_axes_scenario(s->axes, s->axis_count, values, s->base, &derived, NULL) !=
         STATUS_OK) {
-        return effect_none_from(&derived, s->axes[axis].parameter, -1);
+        return false;
     }
-    return NULL;
+
+    bool some = false;
+    for (int i = 0; i < s->axis_count; i++) {
+        why[i] = effect_none_from(&derived, s->axes[i].parameter, -1);
+        some = some || why[i] != NULL;
+    }
+    return some;
 }
 
 status sweep_check_effect(const sweep *s, int axis, fault *f)
@@ -267,18 +274,17 @@ status sweep_check_effect(const sweep *s, int axis, fault *f)
     // are looked at are spread over all
     enum { LOOKED_AT = 10000 };
     const uint64_t step = 2654435761;
-    const char *why = NULL;
-    uint64_t i = 0;
-    while (i < s->run_count && i < LOOKED_AT &&
-           (why = sweep_idle(s, (size_t)(i * step % s->run_count), axis)) != NULL) {
-        i++;
+    const char *why[SWEEP_MOST_AXES];
+    assert(s->run_count > 0);
+    for (uint64_t i = 0; i < s->run_count && i < LOOKED_AT; i++) {
+        sweep_idle(s, (size_t)(i * step % s->run_count), why);
+        if (why[axis] == NULL) {
+            return STATUS_OK;
+        }
     }
-    if (why != NULL) {
-        return fault_set_at(f, STATUS_BAD_ARGUMENT,
-                            sweep_axis_parameter(&s->axes[axis])->path,
-                            "%s has no effect in any run: %s", s->axes[axis].name, why);
-    }
-    return STATUS_OK;
+    return fault_set_at(f, STATUS_BAD_ARGUMENT,
+                        sweep_axis_parameter(&s->axes[axis])->path,
+                        "%s has no effect in any run: %s", s->axes[axis].name, why[axis]);
 }
 
 void sweep_finish(sweep *s)

@@ -84,10 +84,10 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
 status sweep_plan(sweep *s, const sweep_request *request, fault *f);
 void sweep_finish(sweep *s);
 
-// Why axis number `axis` has no effect in a run of the sweep: half a sentence, NULL if it
-// has one or the run's values do not go together. A value that is free is one within its
-// range.
-const char *sweep_idle(const sweep *s, size_t run, int axis);
+// Why each axis has no effect in a run of the sweep, why[axis_count]: half a sentence,
+// NULL if it has one or the run's values do not go together. A value that is free is one
+// within its range. Returns whether some axis has none.
+bool sweep_idle(const sweep *s, size_t run, const char *why[SWEEP_MOST_AXES]);
 
 // STATUS_BAD_ARGUMENT, with a sentence in f, if it has none in any run.
 status sweep_check_effect(const sweep *s, int axis, fault *f);

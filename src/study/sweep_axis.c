@@ -95,12 +95,11 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
 status sweep_axes_scenario(const sweep_axis *axes, int count, const double *values,
                            const scenario *base, scenario *derived, fault *f)
 {
-    parameters p = base->parameters;
     *derived = *base;
     for (int i = 0; i < count; i++) {
-        TRY(sweep_axis_apply(&axes[i], values[i], &p, f));
+        TRY(sweep_axis_apply(&axes[i], values[i], &derived->parameters, f));
     }
-    return scenario_take_parameters(derived, &p, f);
+    return scenario_resolve(derived, f);
 }
 
 double sweep_axis_get(const sweep_axis *axis, const parameters *p)

@@ -202,8 +202,7 @@ static status apply_case(scenario *derived, const robust_case *c, fault *f)
                                                  .value = c->push_impulse[i],
                                                  .added = true});
     }
-    const parameters p = derived->parameters;
-    return scenario_take_parameters(derived, &p, f);
+    return scenario_resolve(derived, f);
 }
 
 status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c,

@@ -122,12 +122,15 @@ status sweep_store_quantity(sweep_store *store, sweep_share share, const char *k
 
 // --- as a table ------------------------------------------------------------------------
 
+// The last column, of the paths of values without effect.
+static const char idle_key[] = "without_effect";
+
 // Whether some run has an axis that idles, so that a table needs a column for it.
 static bool some_idle(const sweep *s)
 {
-    for (size_t i = 0; i < s->run_count * (size_t)s->axis_count; i++) {
-        if (sweep_idle(s, i / (size_t)s->axis_count, (int)(i % (size_t)s->axis_count)) !=
-            NULL) {
+    const char *why[SWEEP_MOST_AXES];
+    for (size_t run = 0; run < s->run_count; run++) {
+        if (sweep_idle(s, run, why)) {
             return true;
         }
     }
@@ -144,20 +147,28 @@ int sweep_store_columns(const sweep *s, result_column columns[SWEEP_COLUMNS])
         }
     }
     if (s->run_count > SWEEP_LOOKED_AT || some_idle(s)) {
-        columns[count++] =
-            (result_column){"without_effect", "without_effect", "", .kind = RESULT_TEXT};
+        columns[count++] = (result_column){idle_key, idle_key, "", .kind = RESULT_TEXT};
     }
     return count;
+}
+
+// Whether a table's columns tell what has no effect; where none idles, rows need not
+// look.
+static bool tells_idle(const result_column *columns, int count)
+{
+    return count > 0 && strcmp(columns[count - 1].key, idle_key) == 0;
 }
 
 // The paths of a run's values without effect, with blanks between them.
 static void idle_paths(const sweep *s, size_t run,
                        char paths[SWEEP_MOST_AXES * SWEEP_NAME])
 {
+    const char *why[SWEEP_MOST_AXES];
     size_t length = 0;
     paths[0] = '\0';
+    sweep_idle(s, run, why);
     for (int i = 0; i < s->axis_count; i++) {
-        if (sweep_idle(s, run, i) != NULL) {
+        if (why[i] != NULL) {
             length +=
                 (size_t)snprintf(paths + length, SWEEP_MOST_AXES * SWEEP_NAME - length,
                                  "%s%s", length > 0 ? " " : "", s->axes[i].name);
@@ -179,8 +190,8 @@ static result_cell cell_at(sqlite3_stmt *row, int column)
 }
 
 // The rows are read and handed on one by one, as there may be millions.
-status sweep_store_rows(sweep_store *of, sweep_share share, sweep_row_taker *take,
-                        void *context, fault *f)
+status sweep_store_rows(sweep_store *of, sweep_share share, const result_column *columns,
+                        int column_count, sweep_row_taker *take, void *context, fault *f)
 {
     sweep_database *store = database_of(of);
     sqlite3_stmt *rows;
@@ -195,7 +206,7 @@ status sweep_store_rows(sweep_store *of, sweep_share share, sweep_row_taker *tak
             continue;
         }
 
-        // the row's cells, then what has no effect, for which there may be no column
+        // the row's cells, then what has no effect
         result_cell cells[SWEEP_COLUMNS];
         char paths[SWEEP_MOST_AXES * SWEEP_NAME];
         int count = 0;
@@ -204,8 +215,10 @@ status sweep_store_rows(sweep_store *of, sweep_share share, sweep_row_taker *tak
                 cells[count++] = cell_at(rows, i);
             }
         }
-        idle_paths(store->sweep, run, paths);
-        cells[count] = (result_cell){paths, 0};
+        if (tells_idle(columns, column_count)) {
+            idle_paths(store->sweep, run, paths);
+            cells[count] = (result_cell){paths, 0};
+        }
         wanted = take(context, run, cells);
     }
 
@@ -239,38 +252,43 @@ static bool write_csv_row(void *context, size_t run, const result_cell *cells)
     return !ferror(file->stream);
 }
 
-// The values of a run that have no effect, [{path, why}]; empty where all have one.
-static json_t *idle_values(const sweep *s, size_t run)
+// Adds the values of a run that have no effect, [{path, why}], if there are any.
+static void put_idle_values(json_t *object, const sweep *s, size_t run)
 {
+    const char *why[SWEEP_MOST_AXES];
+    if (!sweep_idle(s, run, why)) {
+        return;
+    }
     json_t *array = json_array();
     for (int i = 0; i < s->axis_count; i++) {
-        const char *why = sweep_idle(s, run, i);
-        if (why != NULL) {
-            json_add(array, json_of("path:t why:t", s->axes[i].name, why));
+        if (why[i] != NULL) {
+            json_add(array, json_of("path:t why:t", s->axes[i].name, why[i]));
         }
     }
-    return array;
+    json_put(object, idle_key, array);
 }
 
 static bool write_json_row(void *context, size_t run, const result_cell *cells)
 {
     rows_file *file = context;
-    json_t *object = json_object(), *idle = idle_values(file->sweep, run);
+    json_t *object = json_object();
 
     // as the columns, but that JSON says why a value has no effect, too
-    for (int k = 0; k < file->count; k++) {
-        if (strcmp(file->columns[k].key, "without_effect") != 0) {
-            result_put(object, file->columns[k].key, cells[k]);
-        }
+    const bool tells = tells_idle(file->columns, file->count);
+    int plain = file->count;
+    if (tells) {
+        plain--;
     }
-    if (json_array_size(idle) > 0) {
-        json_put(object, "without_effect", json_incref(idle));
+    for (int k = 0; k < plain; k++) {
+        result_put(object, file->columns[k].key, cells[k]);
+    }
+    if (tells) {
+        put_idle_values(object, file->sweep, run);
     }
 
     fputs(file->separator, file->stream);
     json_write_member(file->stream, object, 2);
     file->separator = ",\n    ";
-    json_decref(idle);
     json_decref(object);
     return !ferror(file->stream);
 }
@@ -286,7 +304,8 @@ static status write_json(sweep_store *of, rows_file *file, fault *f)
             sweep_sampling_name(file->sweep->sampling));
     json_decref(name);
 
-    TRY(sweep_store_rows(of, (sweep_share){0, 0}, write_json_row, file, f));
+    TRY(sweep_store_rows(of, (sweep_share){0, 0}, file->columns, file->count,
+                         write_json_row, file, f));
     fputs("\n  ]\n}\n", stream);
     return STATUS_OK;
 }
@@ -302,7 +321,8 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
         return write_json(of, &file, f);
     }
     result_headings(&file.csv, file.columns, file.count);
-    return sweep_store_rows(of, (sweep_share){0, 0}, write_csv_row, &file, f);
+    return sweep_store_rows(of, (sweep_share){0, 0}, file.columns, file.count,
+                            write_csv_row, &file, f);
 }
 
 // --- columns, for whoever draws them ---------------------------------------------------

@@ -53,13 +53,17 @@ enum { SWEEP_COLUMNS = 1 + SWEEP_MOST_AXES + 2 + SUMMARY_NUMBERS + 1 };
 enum { SWEEP_LOOKED_AT = 10000 };
 int sweep_store_columns(const sweep *s, result_column columns[SWEEP_COLUMNS]);
 
-// Takes a row of the table, of a run counted from 0; false: no other one is wanted.
+// Takes a row of the table, a cell for each of its columns, of a run counted from 0;
+// false: no other one is wanted.
 typedef bool sweep_row_taker(void *context, size_t run, const result_cell *cells);
 
-// Hands on the rows of a share in the order of the runs. STATUS_NO_MEMORY, or what is
+// Hands on the rows of a share in the order of the runs, with the columns that
+// sweep_store_columns has given, columns[column_count]. STATUS_NO_MEMORY, or what is
 // wrong with the database.
-status sweep_store_rows(sweep_store *store, sweep_share share, sweep_row_taker *take,
-                        void *context, fault *f) __attribute__((warn_unused_result));
+status sweep_store_rows(sweep_store *store, sweep_share share,
+                        const result_column *columns, int column_count,
+                        sweep_row_taker *take, void *context, fault *f)
+    __attribute__((warn_unused_result));
 
 // Writes all rows in the order of the runs. As CSV: run, varied values, status, message,
 // then the quantities that do not depend on the machine; the header is name[unit]. As

@@ -29,6 +29,8 @@ enum { ROWS_SHOWN = 40 };
 // "motor.voltage = 2 V, method.name = event" of a run.
 static void print_run_values(const sweep *s, size_t run)
 {
+    const char *why[SWEEP_MOST_AXES];
+    sweep_idle(s, run, why);
     for (int i = 0; i < s->axis_count; i++) {
         const char *unit = sweep_axis_parameter(&s->axes[i])->unit;
         char text[128];
@@ -37,7 +39,7 @@ static void print_run_values(const sweep *s, size_t run)
             say(", ");
         }
         say("%s = %s%s%s", s->axes[i].name, text, blank_before(unit), unit);
-        if (sweep_idle(s, run, i) != NULL) {
+        if (why[i] != NULL) {
             say(" (no effect)");
         }
     }
@@ -155,7 +157,8 @@ static status write_parquet(const sweep_order *o, sweep_store *store, FILE *stre
     if (sweep_table_begin(&table, stream, columns, count) != STATUS_OK) {
         return fault_no_memory(f);
     }
-    const status code = sweep_store_rows(store, o->share, sweep_table_row, &table, f);
+    const status code =
+        sweep_store_rows(store, o->share, columns, count, sweep_table_row, &table, f);
     sweep_table_end(&table, o->sweep->base);
     return code;
 }
