@@ -10,7 +10,8 @@
 // best of IDENTIFY_SCREENED sets that are drawn independently. The result is settled when
 // the least of their minima was reached from IDENTIFY_CONFIRMED drawn starts: a false
 // minimum that draws end in with probability a, while they end in the least with
-// probability b, is taken for it with at most (a/(a + b))^IDENTIFY_CONFIRMED.
+// probability b, is taken for it with at most (a/(a + b))^IDENTIFY_CONFIRMED. Last is
+// searched around it.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,14 +35,18 @@
 #define SAME_NUMBER 1.0
 // Mean square of the residuals above which a part of the traces is not explained.
 #define NOT_EXPLAINED 2.0
-// By how many standard deviations sets are drawn around a result, at most.
-#define SPREAD            3.0
-#define LEAST_INFORMATION 100.0 // on a combination of unknowns, in their scales
+// By how much a round around a result has to lower the sum of squares.
+#define GAIN 0.1
+// By how many standard deviations sets are drawn around a result at most, to begin with,
+// and how far, in the unknowns' scales.
+#define SPREAD   3.0
+#define FARTHEST 0.3
 
 enum {
     MOST_STEPS = 60,     // of a minimisation
     PARTS = 4,           // in which a search takes the traces at least,
     MOST_PARTS = 12,     // and at most
+    IDLE_ROUNDS = 6,     // around a result that end a search
     SCENARIOS_STARTS = 2 // with the scenario's parameters
 };
 
@@ -259,10 +264,10 @@ static double mean_square(const search *s, double squares)
 }
 
 // Draws sets of unknowns around x from what the part that was compared last leaves open:
-// along each eigenvector v of J'J, J being the Jacobian and l the eigenvalue, SPREAD
-// standard deviations 1/sqrt(l) or less. Copies the one with the least sum of squares
-// over the next part to x.
-static status draw_around(search *s, double next_part, double *x)
+// along each eigenvector v of J'J, J being the Jacobian and l the eigenvalue, `spread`
+// standard deviations 1/sqrt(l) or less, and not beyond FARTHEST. Copies the one with the
+// least sum of squares over the next part to x.
+static status draw_around(search *s, double spread, double next_part, double *x)
 {
     identification *id = s->id;
     const size_t m = id->residuals, n = (size_t)id->unknowns;
@@ -281,8 +286,8 @@ static status draw_around(search *s, double next_part, double *x)
         double *set = s->sets + k * n;
         memcpy(set, x, n * sizeof *x);
         for (size_t e = 0; e < n; e++) {
-            const double deviations = SPREAD * (2 * random_uniform(&s->random) - 1);
-            const double along = deviations / sqrt(fmax(values[e], LEAST_INFORMATION));
+            const double most = fmin(spread / sqrt(fmax(values[e], 1)), FARTHEST);
+            const double along = most * (2 * random_uniform(&s->random) - 1);
             identify_add_scaled(set, along, products + e * n, n);
         }
     }
@@ -308,7 +313,7 @@ static status minimise_next_part(search *s, double part, double *x, double *mean
 
     double other;
     id->part = part_before;
-    TRY(draw_around(s, part, before));
+    TRY(draw_around(s, SPREAD, part, before));
     TRY(minimise(s, TOLERANCE_PART, before, &other));
     if (other < squares) {
         *mean = mean_square(s, other);
@@ -342,7 +347,30 @@ static void count_minimum(identification *id, double squares, double least, bool
     }
 }
 
-// Searches from one start after the other, and refines the best result.
+// Goes on from the best of sets that are drawn around the result, and refines what comes
+// of it: behind many touches the sum of squares has several minima whose parameters
+// differ by some thousandths, and searches from afar end in any of them. Each round that
+// gains nothing draws twice as far, until IDLE_ROUNDS of them have gained nothing.
+static status search_around_best(search *s)
+{
+    double x[IDENTIFY_UNKNOWNS], squares;
+    int idle = 0;
+    while (idle < IDLE_ROUNDS) {
+        const double before = s->least;
+        memcpy(x, s->best, sizeof x);
+        TRY(draw_around(s, SPREAD * ldexp(1, idle), 1, x));
+        TRY(minimise(s, TOLERANCE_WHOLE, x, &squares));
+        if (s->least < before - GAIN) {
+            idle = 0;
+        } else {
+            idle++;
+        }
+    }
+    memcpy(x, s->best, sizeof x);
+    return minimise(s, TOLERANCE_BEST, x, &squares);
+}
+
+// Searches from one start after the other, then around the best result.
 static status search_from_starts(search *s)
 {
     identification *id = s->id;
@@ -369,8 +397,7 @@ static status search_from_starts(search *s)
         least = fmin(least, squares);
         id->searches++;
     }
-    memcpy(x, s->best, sizeof x);
-    return minimise(s, TOLERANCE_BEST, x, &squares);
+    return search_around_best(s);
 }
 
 status identify_minimise_held(identification *id, int held, double *x, double *squares,
