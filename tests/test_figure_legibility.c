@@ -661,8 +661,9 @@ TEST(every_command_draws_what_can_be_read)
     assert_int_equal(complaints, 0);
 }
 
-// Labels of levels that lie together are apart, or left out.
-TEST(levels_that_lie_together_can_be_read)
+// Labels of levels that lie together are apart, or left out; the axis of a parameter with
+// a long description goes by its symbol in a column.
+TEST(recipes_draw_what_can_be_read)
 {
     put_file(
         "levels.yaml",
@@ -672,9 +673,16 @@ TEST(levels_that_lie_together_can_be_read)
         "    levels: [{at: 1, label: command}, {at: 0.95, label: less},\n"
         "             {at: 1.05, label: more}, {at: 1.06, label: much more},\n"
         "             {at: 0.94, label: much less}, {at: 1.01, label: a bit more}]\n");
+    put_file("map.yaml",
+             "tables:\n"
+             "  - {name: sweep, x: arm.k2, y: motor.voltage, z: peak_force_N,\n"
+             "     rows: [[4, 1, 1], [6, 1, 2], [4, 2, 3], [6, 2, 5]]}\n"
+             "panels:\n"
+             "  - {from: [sweep]}\n");
     complaints = 0;
     for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
         check_command("plot levels.yaml -o drawn.svg", widths[k]);
+        check_command("plot map.yaml -o drawn.svg", widths[k]);
     }
     assert_int_equal(complaints, 0);
 }

@@ -128,7 +128,9 @@ static figure_axis column_axis(recipe *r, const char *key)
     const int parameter = parameter_find(key), quantity = summary_find(key);
     if (parameter >= 0) {
         const parameter_info *info = &parameter_table[parameter];
-        return described_axis(r->plot, key, info->description, info->unit);
+        figure_axis out = described_axis(r->plot, key, info->description, info->unit);
+        axis_name_shortly(r->plot, &out, info->symbol);
+        return out;
     }
     if (quantity >= 0) {
         const summary_info *info = &summary_table[quantity];
@@ -488,6 +490,9 @@ static void describe_horizontal(recipe *r, figure_axis *x)
 
     // the recipe's own label and unit come first
     x->name = usual.name;
+    if (x->label == NULL) {
+        x->symbol = usual.symbol;
+    }
     x->label = text_or(x->label, usual.label);
     x->unit = text_or(x->unit, usual.unit);
     if (r->logarithmic) {

@@ -61,6 +61,10 @@ marker_kind marker_of(size_t points, size_t index);
 figure_axis described_axis(owned_figure *o, const char *name, const char *description,
                            const char *unit);
 
+// Gives an axis its symbol, behind its label too; one without (NULL) goes by its name
+// where the label has no room.
+void axis_name_shortly(owned_figure *o, figure_axis *a, const char *symbol);
+
 // The map of z over the grid that points make, with contours and hatched where there is
 // no point, kept by the figure. NULL if most of the grid would be: the points make none.
 figure_map *figure_grid(owned_figure *o, const double *x, const double *y,

@@ -167,9 +167,7 @@ static const char *point_label(owned_figure *o, const varied *v, size_t i)
     return owned_figure_keep(o, text_escape(word));
 }
 
-// Gives an axis its symbol, behind its label too; a parameter without one goes by its
-// path where the label has no room.
-static void name_shortly(owned_figure *o, figure_axis *a, const char *symbol)
+void axis_name_shortly(owned_figure *o, figure_axis *a, const char *symbol)
 {
     if (symbol == NULL) {
         a->symbol = owned_figure_keep(o, text_escape(a->name));
@@ -193,7 +191,7 @@ static figure_axis varied_axis(owned_figure *o, varied *v, const sweep_axis *axi
         description = NULL;
     }
     figure_axis out = described_axis(o, axis->name, description, info->unit);
-    name_shortly(o, &out, info->symbol);
+    axis_name_shortly(o, &out, info->symbol);
     if (axis->logarithmic) {
         out.scale = SCALE_LOGARITHMIC;
     }
