@@ -82,7 +82,7 @@ static bool is_hidden(const pane *p, int k)
 }
 
 // How a legend says what its curves are, most words first.
-typedef enum legend { LEGEND_NAMES, LEGEND_SYMBOLS, LEGEND_TIGHT, LEGEND_BARE } legend;
+typedef enum legend { LEGEND_NAMES, LEGEND_BRIEF, LEGEND_TIGHT, LEGEND_BARE } legend;
 
 // The value of a signal at the cursor, of the first run that a pane shows.
 static double value_at_cursor(const explorer_model *model, const pane *p, int signal)
@@ -135,18 +135,18 @@ static void write_legend(const explorer_model *model, const pane *p, int signal,
                          legend how, char *text, size_t size)
 {
     const signal_info *info = &signal_table[signal];
-    const char *name;
     char value[48];
-    format_legend_value(model, p, signal, how == LEGEND_TIGHT, value, sizeof value);
+    format_legend_value(model, p, signal, how != LEGEND_NAMES, value, sizeof value);
     const bool has_own_unit = pane_unit(p)[0] == '\0' && info->unit[0] != '\0';
     switch (how) {
     case LEGEND_NAMES:
-    case LEGEND_SYMBOLS:
         if (has_own_unit) {
             text_add(value, sizeof value, " %s", info->unit);
         }
-        name = how == LEGEND_NAMES ? info->name : info->ascii;
-        snprintf(text, size, "%s %-8s", name, value);
+        snprintf(text, size, "%s %-8s", info->name, value);
+        break;
+    case LEGEND_BRIEF:
+        snprintf(text, size, "%s %-6s", info->name, value);
         break;
     case LEGEND_TIGHT:
         snprintf(text, size, "%s %-6s", info->ascii, value);
