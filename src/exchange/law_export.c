@@ -17,12 +17,12 @@
 #define TOUCH_FILE                                                                       \
     "touch_memory", {touch_double, touch_single}, {17000, 850},                          \
     {                                                                                    \
-        424, 248                                                                         \
+        432, 248                                                                         \
     }
 #define HYBRID_FILE                                                                      \
     "hybrid_memory", {hybrid_double, hybrid_single}, {14000, 500},                       \
     {                                                                                    \
-        304, 192                                                                         \
+        312, 192                                                                         \
     }
 #define FORCE_FILE                                                                       \
     "force_memory", {force_feedback_double, force_feedback_single}, {3500, 200},         \
