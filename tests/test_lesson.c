@@ -114,7 +114,7 @@ TEST(test_what_a_step_names_is_on_the_screen)
         {"beta-and-gamma", 3, false, "beta"},
         {"beta-and-gamma", 3, true, "ledger"},
         {"hybrid-law", 1, true, "hybrid: force"},
-        {"hybrid-law", 2, false, "f 0.999"},
+        {"hybrid-law", 2, false, "force 0.999"},
         {"hybrid-law", 3, false, "transition_time"},
         {"hybrid-law", 4, false, "transition_time"},
         {"what-a-sensor-sees", 1, true, "fsr"},

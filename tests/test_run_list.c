@@ -153,7 +153,7 @@ TEST(test_states_are_not_subtracted)
         }
     }
     assert_true(forces > 100);
-    assert_shows(&ex, "mode force    \u254c contact 1", "are this run's; D shows",
+    assert_shows(&ex, "mode force  \u254c contact 1", "are this run's; D shows",
                  "!stick 1                    minus baseline");
     press_shows(&ex, "X", "minus baseline, visible part");
 }
