@@ -201,13 +201,13 @@ bool has_y_labels(const drawing *d, const panel_layout *l)
     return !d->fig->shared_y || l->column == 0;
 }
 
-// The title of the vertical axis, upwards at the left of everything.
 double y_title_room(const panel_layout *l)
 {
     enum { APART = 4 }; // titles of neighbours [pt]
     return l->plane.box.height + PANEL_SPACE - APART;
 }
 
+// The title of the vertical axis, upwards at the left of everything.
 void draw_y_title(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
