@@ -38,13 +38,17 @@ catches() { # JOB SIGNAL: it is the program, and catches that signal
 begins() { # JOB: it has begun, and catches SIGINT
     catches "$1" 2
 }
+used_by() { # JOB: time of the processor, in ticks
+    awk '{ print $14 + $15 }' "/proc/$1/stat"
+}
+works() { # JOB: it has begun, and used some time of the processor
+    begins "$1" && [ "$(used_by "$1")" -ge "${least:-15}" ]
+}
 computes() { # JOB: it makes runs, and has used some time of the processor since it began with them: it
     # catches SIGALRM, too, which gives up runs in hand
-    local used
     catches "$1" 14 || return 1
-    used=$(awk '{ print $14 + $15 }' "/proc/$1/stat")
-    [ -n "$used_before" ] || used_before=$used
-    [ $((used - used_before)) -ge "${least:-15}" ]
+    [ -n "$used_before" ] || used_before=$(used_by "$1")
+    [ $(($(used_by "$1") - used_before)) -ge "${least:-15}" ]
 }
 looks=0
 blocked() { # JOB: all of its threads sleep, and have since it was looked at eight times
@@ -248,6 +252,7 @@ interrupted animate endless.yaml -o film
 says err "no film is made"
 interrupted bench --json bench.json
 part bench.json
+interrupted_once works modes corrected/first-impact --set arm.links=1000
 
 printf 'title: T\nruns:\n  - scenario: brief.yaml\npanels:\n  - signals: [force]\n' >late.yaml
 
