@@ -13,8 +13,7 @@
 #pragma once
 
 #include "src/arm/arm.h"
-
-#define KERNEL static inline __attribute__((always_inline))
+#include "src/base/kernel.h"
 
 #ifdef FORCE_LANES
 typedef double force_number __attribute__((vector_size(8 * FORCE_LANES)));

@@ -11,10 +11,9 @@
 #include <immintrin.h>
 #endif
 
+#include "src/base/kernel.h"
 #include "src/base/sincos.h"
 #include "src/engines/pair/taylor_series.h"
-
-#define KERNEL static inline __attribute__((always_inline))
 
 #if LANES == 1
 typedef double real;
