@@ -60,6 +60,13 @@ TEST(a_table_is_read_however_it_is_written)
         "sample,v\n0,1.5\n1,-2\n2,2500\n",
         "time[#],v\n0,1.5\n1,-2\n2,2500\n",
         "time,v\n0,1.5\n0.5,-2\n1,2500\n1.5",
+        "Model,X2\nUnits,s\nInterval,0.5\nLength,3\n\ntime,v\n0,1.5\n0.5,-2\n1,2500\n",
+        "\"3 inch scope\ntime;v\n0;1,5\n0,5;-2\n1;2500\n",
+        "time,v,note\n0,1.5,\"open\n0.5,-2,x\n1,2500,\"again\n",
+        "\"time\n[s]\",\"v\nof it\",v\n0,7,1.5\n0.5,7,-2\n1,7,2500\n",
+        "index,Elapsed_(ms),v\n7,0,1.5\n8,500,-2\n9,1000,2500\n",
+        "speed m/s;Zeit/s;v\n1;0;1,5\n2;0,5;-2\n1;1;2500\n",
+        "time,v,v\n0,1.5,1.5\n0.5,-2,-2\n1,2500,2500\n",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         SCOPED(csv_table_finish) csv_table t = {0};
@@ -82,7 +89,7 @@ TEST(rows_without_a_time_are_left_out_and_gaps_filled)
 {
     char text[4096] = "time[s],v[V],n[N]\n", told[200];
     for (int i = 0; i < 60; i++) {
-        const char *volts = i % 3 == 1 ? "1" : (i % 2 ? "" : "NaN");
+        const char *volts = i % 3 == 1 ? "1" : (i % 2 ? "#N/A" : "-nan");
         char time[16];
         snprintf(time, sizeof time, "%d", i);
         if (i == 20) {
@@ -161,6 +168,10 @@ TEST(what_cannot_be_read_is_named_with_line_and_column)
         {"time[s],v[V]\n0,\n1,2\n", 2, 2, "''"},
         {"time[s],v[V]\n0,1\n1,2x\n", 3, 2, "'2x'"},
         {"time[s],v[V]\n0,1\n1,1e999\n", 3, 2, "'1e999'"},
+        {"time[s];v[V]\n0;1,5\n1;2.000\n", 3, 2, "such as 1,5"},
+        {"time,v,w,v\n0,1,2,1\n1,2,3,4\n", 3, 4, "columns 2 and 4"},
+        {"Model,X2\ntime[s],w[V]\n0,1\n1,2\n", 2, 1, "'time[s]', 'w[V]'"},
+        {"log\n\ntime[s],v[furlong]\n0,1\n1,2\n", 3, 2, "[furlong]"},
         {"time[s],v[V]\n1,1\n0.5,2\n", 3, 1, "growing"},
     };
     for (EACH(c, cases)) {

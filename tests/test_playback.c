@@ -137,7 +137,7 @@ TEST(a_file_with_faults_is_told_with_its_place)
         {"t[s],command[V]\n0,nan\n0.1,\n", "bad.csv:2:2: 'nan'"},
         {"t[s],command[V]\n0.2,1\n0.1,2\n", "bad.csv:3:1: the time"},
         {"t[s],u[V]\n0,1\n", "there is no column 'command'"},
-        {"x[s],command[V]\n0,1\n", "there is no column 'time'"},
+        {"x,command[V]\n0,1\n", "there is no column 'time'"},
         {"t[s],command[furlong]\n0,1\n", "bad.csv:1:2: the unit [furlong]"},
         {"t,command\n0,1\n2,1\n4,1\n6,1\n8,1\n10,1\n12,1\n14,1\n16,1\n18,1\n",
          "bad.csv:3:1: by their times the rows come every 2 s"},

@@ -35,6 +35,7 @@ typedef struct mutation {
     int lost, empty, doubled; // a row, a cell, a row twice in so many; 0: none
     int heading;              // how it names units
     char separator[8], decimal;
+    const char *clock;             // heading of its times
     const char *line_end, *before; // of each line; what stands above the headings
     bool marked, quoted, unit_row, counted_rows, trailing, swapped, breaks_off, degrees;
     bool counter, headless,
@@ -103,8 +104,15 @@ static mutation draw_mutation(void)
     static const double begins[] = {0, 0, 0, -0.2, 5.25, 1000, 1764420000.5};
     static const char *const separators[] = {",", ",", ";", "\t", "|", "  ", ", "};
     static const char *const befores[] = {
-        "",       "", "", "# bench 3, \"left\n# 2026\n", "Device: X2\nDate;2026\n\n",
-        "% log\n"};
+        "",
+        "",
+        "",
+        "# bench 3, \"left\n# 2026\n",
+        "Device: X2\nDate;2026\n\n",
+        "% log\n",
+        "Model,X2\nUnits,s\nInterval,0.01\nLength,400\nGain,2\n\n",
+        "\"3 inch, left\n"};
+    static const char *const clocks[] = {"time", "time", "T", "Zeit", "elapsed"};
     static const char *const line_ends[] = {"\n", "\n", "\r\n", "\r"};
     mutation m = {.base = one_of(BASES), .decimal = '.'};
     const recorded *r = &bases[m.base];
@@ -130,7 +138,8 @@ static mutation draw_mutation(void)
     m.heading = one_of(6);
     snprintf(m.separator, sizeof m.separator, "%s", separators[one_of(7)]);
     m.line_end = line_ends[one_of(4)];
-    m.before = befores[one_of(6)];
+    m.before = befores[one_of(8)];
+    m.clock = clocks[one_of(5)];
     m.marked = sometimes(0.2);
     m.quoted = m.separator[0] == ',' && sometimes(0.3);
     m.decimal = (m.separator[0] != ',' || m.quoted) && sometimes(0.4) ? ',' : '.';
@@ -144,6 +153,7 @@ static mutation draw_mutation(void)
     if (m.unsaid) {
         m.unit = 1e3;
         m.counter = false;
+        m.clock = "time";
     }
     return m;
 }
@@ -183,8 +193,8 @@ static const char *time_unit(const mutation *m)
 
 static void write_headings(FILE *file, const mutation *m)
 {
-    static const char *const names[COLUMNS] = {"time", "command", "encoder", "tachometer",
-                                               "force_reading"};
+    const char *const names[COLUMNS] = {m->clock, "command", "encoder", "tachometer",
+                                        "force_reading"};
     const char *units[COLUMNS] = {time_unit(m), "V", "rad", "rad/s", "N"};
     if (m->degrees) {
         units[2] = "deg";
@@ -359,6 +369,7 @@ static void play_exactly(int base)
                             .decimals = 9,
                             .decimal = '.',
                             .separator = ",",
+                            .clock = "time",
                             .line_end = "\n",
                             .before = ""};
     write_mutated(&exact);
@@ -379,7 +390,8 @@ static void play_exactly(int base)
 TEST(what_a_person_can_read_is_read_and_right)
 {
     static const int rates[BASES] = {500, 200, 1000};
-    int refused = 0, beyond_three = 0, fitted = 0;
+    int refused = 0;
+    double farthest = 0;
     for (int i = 0; i < BASES; i++) {
         bases[i] = (recorded){.rate = rates[i], .duration = 0.75};
         record(&bases[i]);
@@ -391,7 +403,7 @@ TEST(what_a_person_can_read_is_read_and_right)
         const recorded *r = &bases[m.base];
         write_mutated(&m);
 
-        // what nobody can read is refused by all
+        // what nobody can read is refused
         double off[FITTED];
         fault f = {.text = ""};
         const bool unreadable = m.headless || m.unsaid;
@@ -400,14 +412,15 @@ TEST(what_a_person_can_read_is_read_and_right)
         fail_if(read == unreadable, "mutation %d: %s", n, f.text);
         if (unreadable) {
             fail_if(!names_line(f.text), "mutation %d: %s", n, f.text);
+            fail_if(m.headless && lies_right(&m, &f), "mutation %d is read", n);
+            fail_if(!names_line(f.text), "mutation %d: %s", n, f.text);
             refused++;
             continue;
         }
         for (int i = 0; i < FITTED; i++) {
-            fail_if(fabs(off[i]) > 5, "mutation %d: %s is %.3g errors off", n, paths[i],
+            fail_if(fabs(off[i]) > 3, "mutation %d: %s is %.3g errors off", n, paths[i],
                     off[i]);
-            beyond_three += fabs(off[i]) > 3;
-            fitted++;
+            farthest = fmax(farthest, fabs(off[i]));
         }
 
         // the same run under its commands, to the last bit
@@ -419,10 +432,9 @@ TEST(what_a_person_can_read_is_read_and_right)
                 r->played.peak_force_N);
         fail_if(!lies_right(&m, &f), "mutation %d: %s", n, f.text);
     }
-    print_message("%d of %d refused, %d of %d values more than three errors off\n",
-                  refused, mutations, beyond_three, fitted);
+    print_message("%d of %d refused, values up to %.3g errors off\n", refused, mutations,
+                  farthest);
     assert_true(refused <= mutations / 20);
-    assert_true(beyond_three <= fitted / 100 + 1);
 }
 
 int main(int argc, char **argv)

@@ -396,8 +396,8 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     } else {
         code = fault_set(
             f, STATUS_BAD_ARGUMENT,
-            "%s:1: there is no column '%s' with the unit of a signal that is shown", path,
-            column);
+            "%s:%d: there is no column '%s' with the unit of a signal that is shown",
+            path, table.headings_line, column);
     }
     csv_table_finish(&table);
 

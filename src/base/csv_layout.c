@@ -14,6 +14,7 @@
 
 enum {
     LINES_LOOKED_AT = 400, // for the separator
+    ROWS_LOOKED_AT = 20,   // below headings
     NUMBER_FIELD = 64      // longest number [characters]
 };
 
@@ -73,18 +74,44 @@ static bool separates(char c, char separator)
     return c == separator || (separator == ' ' && c == '\t');
 }
 
+// The quote that closes a field, of which `text` follows the first one: two quotes stand
+// for one, and behind line ends only one counts that ends the field. NULL if there is
+// none: the first quote is part of the field then.
+static const char *closing_quote(const char *text, char separator)
+{
+    bool other_line = false;
+    for (const char *c = text; *c != '\0'; c++) {
+        other_line = other_line || *c == '\n';
+        if (c[0] == '"' && c[1] == '"') {
+            c++;
+        } else if (c[0] == '"') {
+            const bool ends =
+                c[1] == '\0' || is_blank(c[1]) || separates(c[1], separator);
+            if (other_line && !ends) {
+                return NULL;
+            }
+            return c;
+        }
+    }
+    return NULL;
+}
+
 // How many fields a line has, of which blanks alone are none; *text becomes the next
 // line.
 static int count_fields(const char **text, char separator)
 {
     const char *c = *text;
     int fields = 0;
-    bool quoted = false, within = false;
-    for (; *c != '\0' && (quoted || *c != '\n'); c++) {
-        if (*c == '"' && (quoted || !within)) {
-            quoted = !quoted;
+    bool within = false;
+    for (; *c != '\0' && *c != '\n'; c++) {
+        const char *closing = NULL;
+        if (*c == '"' && !within) {
+            closing = closing_quote(c + 1, separator);
         }
-        if (!quoted && separates(*c, separator) && (within || separator != ' ')) {
+        if (closing != NULL) {
+            c = closing;
+            within = true;
+        } else if (separates(*c, separator) && (within || separator != ' ')) {
             fields++;
             within = false;
         } else if (!is_blank(*c)) {
@@ -141,6 +168,7 @@ typedef struct file_rows {
     int *lines;
     bool *comment;
     size_t count;
+    char separator;
 } file_rows;
 
 static void file_rows_finish(file_rows *r)
@@ -192,7 +220,7 @@ static char *next_field(char **text, char separator, bool comment, int *line, ch
         from++;
     }
     char *const field = from, *to = from;
-    if (*from == '"' && !comment) {
+    if (*from == '"' && !comment && closing_quote(from + 1, separator) != NULL) {
         from = copy_quoted_field(from + 1, &to, separator, line);
     }
     while (*from != '\0' && *from != '\n' && !separates(*from, separator)) {
@@ -247,7 +275,7 @@ static void take_row(file_rows *r, char **text, char separator, int *line)
 // and line ends.
 static status divide(file_rows *r, char *text, fault *f)
 {
-    const char separator = find_separator(text);
+    const char separator = r->separator = find_separator(text);
     size_t fields = 2, lines = 2;
     for (const char *c = text; *c != '\0'; c++) {
         if (*c == '\n') {
@@ -278,6 +306,9 @@ bool csv_layout_number(const char *field, char decimal, double *number)
 {
     char text[NUMBER_FIELD];
     const char *rest;
+    if (decimal == ',' && strchr(field, '.') != NULL) {
+        return false;
+    }
     if (decimal == ',' && strlen(field) < sizeof text) {
         // the first comma is the decimal sign, a second one stays
         strcpy(text, field);
@@ -296,27 +327,32 @@ static int numbers_of(const file_rows *r, size_t row)
     int numbers = 0;
     for (size_t i = r->begin[row]; i < r->begin[row + 1]; i++) {
         double number;
-        if (csv_layout_number(r->fields[i], ',', &number)) {
+        if (csv_layout_number(r->fields[i], '.', &number) ||
+            csv_layout_number(r->fields[i], ',', &number)) {
             numbers++;
         }
     }
     return numbers;
 }
 
-// Whether the numbers have a decimal comma: some have a comma, and none a point.
-static char find_decimal(const csv_table *t)
+// The decimal sign: a comma where numbers have one, unless it separates fields and
+// numbers have a point, too.
+static char find_decimal(const csv_table *t, char separator)
 {
-    bool comma = false;
+    bool comma = false, point = false;
     for (size_t i = 0; i < t->rows * (size_t)t->columns; i++) {
         const char *field = t->fields[i];
         double number;
         if (strchr(field, ',') != NULL && csv_layout_number(field, ',', &number)) {
             comma = true;
-        } else if (strchr(field, '.') != NULL && csv_layout_number(field, '.', &number)) {
-            return '.';
+        } else if (!point && strchr(field, '.') != NULL) {
+            point = csv_layout_number(field, '.', &number);
         }
     }
-    return comma ? ',' : '.';
+    if (comma && !(point && separator == ',')) {
+        return ',';
+    }
+    return '.';
 }
 
 // --- headings --------------------------------------------------------------------------
@@ -368,28 +404,44 @@ static bool is_below(const file_rows *r, size_t row, int headings)
     return abs(fields_of(r, row) - headings) <= 1 && numbers_of(r, row) > 0;
 }
 
-// Whether a row can be the headings: it has no number, and one or two rows of numbers
-// follow it, as far as there are rows.
-static bool heads_numbers(const file_rows *r, size_t row)
+// How many rows of numbers, as far as is looked, a row heads that has no number itself; a
+// single one counts at the end only.
+static int rows_headed(const file_rows *r, size_t row)
 {
     const int headings = fields_of(r, row);
-    const size_t first = data_below(r, row);
-    if (numbers_of(r, row) > 0 || first == r->count || !is_below(r, first, headings)) {
-        return false;
+    size_t below = data_below(r, row);
+    int rows = 0;
+    if (numbers_of(r, row) > 0) {
+        return 0;
     }
-    const size_t second = skip_comments(r, first + 1);
-    return second == r->count || is_below(r, second, headings);
+    while (rows < ROWS_LOOKED_AT && below < r->count && is_below(r, below, headings)) {
+        rows++;
+        below = skip_comments(r, below + 1);
+    }
+    if (rows == 1 && below < r->count) {
+        return 0;
+    }
+    return rows;
 }
 
-// The row of headings: the first that can be it, else the first row if it has no number,
-// else the last comment above it with as many fields. The count of rows if there is none.
+// The row of headings: the first that heads most rows, else the first row if it has no
+// number, else the last comment above it with as many fields. The count of rows if there
+// is none.
 static size_t find_headings(const file_rows *r)
 {
     const size_t first = skip_comments(r, 0);
-    for (size_t row = first; row < r->count; row = skip_comments(r, row + 1)) {
-        if (heads_numbers(r, row)) {
-            return row;
+    size_t best = r->count;
+    int most = 0;
+    for (size_t row = first; row < r->count && most < ROWS_LOOKED_AT;
+         row = skip_comments(r, row + 1)) {
+        const int rows = rows_headed(r, row);
+        if (rows > most) {
+            most = rows;
+            best = row;
         }
+    }
+    if (most > 0) {
+        return best;
     }
     if (first == r->count || numbers_of(r, first) == 0) {
         return first;
@@ -510,6 +562,7 @@ static status make_table(csv_table *t, const file_rows *r, bool cut, fault *f)
         t->columns--;
     }
     t->headings = copy_row(r, headings, 0, t->columns);
+    t->headings_line = r->lines[headings];
 
     // a row of units
     bool room = t->headings != NULL;
@@ -522,7 +575,7 @@ static status make_table(csv_table *t, const file_rows *r, bool cut, fault *f)
         return fault_no_memory(f);
     }
     TRY(add_table_rows(t, r, data_below(r, headings), cut, f));
-    t->decimal = find_decimal(t);
+    t->decimal = find_decimal(t, r->separator);
     return STATUS_OK;
 }
 
@@ -530,7 +583,7 @@ status csv_layout_read(csv_table *t, const char *path, size_t least, fault *f)
 {
     static const char mark[] = "\xEF\xBB\xBF"; // that some programs put before UTF-8
     assert(least > 0);
-    *t = (csv_table){.file = strdup(path), .decimal = '.'};
+    *t = (csv_table){.file = strdup(path), .decimal = '.', .headings_line = 1};
     if (t->file == NULL) {
         return fault_no_memory(f);
     }

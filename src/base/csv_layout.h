@@ -4,9 +4,10 @@
 //
 // Fields are separated by commas, semicolons, tabs, strokes or blanks, whichever gives
 // most rows the number of fields that the next one has, and may stand in quotes (RFC
-// 4180). A line that begins with #, % or // is a comment. The headings are the first row
-// without a number that numbers in as many fields follow, or such a row in the comment
-// above the first numbers.
+// 4180); a quote that is not closed is part of its field. A line that begins with #, % or
+// // is a comment. The headings are the first row without a number that twenty rows of
+// numbers in as many fields follow, else the one that most do, else such a row in the
+// comment above the first numbers.
 #pragma once
 
 #include <stdbool.h>
@@ -20,11 +21,12 @@ typedef struct csv_table {
     int columns;     // headings, and fields of each row
     size_t rows;     // below the headings
     char **headings; // [columns], owned
-    char **units;    // [columns], of a row of units below the headings, owned; NULL if
-                     // there is none
-    char **fields;   // row by row, owned
-    int *lines;      // of each row in the file, from 1; owned
-    char decimal;    // sign before the decimals, '.' or ','
+    int headings_line;
+    char **units;  // [columns], of a row of units below the headings, owned; NULL if
+                   // there is none
+    char **fields; // row by row, owned
+    int *lines;    // of each row in the file, from 1; owned
+    char decimal;  // sign before the decimals, '.' or ','
 
     // rows that are left out, and rows that csv_table_times puts in order
     int cut_line;     // of a last row that breaks off; 0: there is none
@@ -40,5 +42,6 @@ typedef struct csv_table {
 // the table is to be finished.
 status csv_layout_read(csv_table *t, const char *path, size_t least, fault *f);
 
-// The finite number in a field, with that decimal sign; false for all else.
+// The finite number in a field, with that decimal sign and not the other one; false for
+// all else.
 bool csv_layout_number(const char *field, char decimal, double *number);

@@ -62,8 +62,8 @@ int csv_table_find(const csv_table *t, const char *heading)
     const size_t asked = asked_name_length(heading);
     int same = -1, alike = -1;
 
-    // the heading itself, or the first of its name in another unit
-    for (int c = t->columns - 1; c >= 0; c--) {
+    // the first such heading itself, or of its name in another unit
+    for (int c = 0; c < t->columns; c++) {
         const char *here = t->headings[c];
         size_t length;
         char unit[UNIT_TEXT];
@@ -71,10 +71,13 @@ int csv_table_find(const csv_table *t, const char *heading)
         if (strcmp(here, heading) == 0) {
             return c;
         }
-        if (length == asked && strncmp(here, heading, length) == 0) {
+        if (length != asked) {
+            continue;
+        }
+        if (same < 0 && strncmp(here, heading, length) == 0) {
             same = c;
         }
-        if (length == asked && strncasecmp(here, heading, length) == 0) {
+        if (alike < 0 && strncasecmp(here, heading, length) == 0) {
             alike = c;
         }
     }
@@ -88,6 +91,23 @@ int csv_table_find(const csv_table *t, const char *heading)
 static const char *const time_names[] = {"time", "t", "timestamp", "time stamp", "stamp"};
 static const char *const count_names[] = {"sample",  "samples", "index", "count",
                                           "counter", "tick",    "n",     "frame"};
+
+// The heading of the only column in a unit of time, NULL if there is none.
+static const char *only_time(const csv_table *t)
+{
+    const char *found = NULL;
+    for (int c = 0; c < t->columns; c++) {
+        char unit[UNIT_TEXT];
+        if (!csv_table_unit(t, c, unit) || csv_unit_factor(unit, "s") == 0) {
+            continue;
+        }
+        if (found != NULL) {
+            return NULL;
+        }
+        found = t->headings[c];
+    }
+    return found;
+}
 
 // The first of some names that a table has as a heading.
 static const char *first_found(const csv_table *t, const char *const *names, size_t count)
@@ -103,6 +123,9 @@ static const char *first_found(const csv_table *t, const char *const *names, siz
 const char *csv_table_clock(const csv_table *t)
 {
     const char *name = first_found(t, time_names, sizeof time_names / sizeof *time_names);
+    if (name == NULL) {
+        name = only_time(t);
+    }
     if (name != NULL) {
         return name;
     }
@@ -135,18 +158,49 @@ static bool find_unit(const csv_table *t, const char *heading, int column,
     return true;
 }
 
+static const char *field_at(const csv_table *t, size_t row, int column)
+{
+    return t->fields[row * (size_t)t->columns + (size_t)column];
+}
+
+// Refuses a column whose heading another one has, too, where they differ.
+static status check_alone(const csv_table *t, int column, fault *f)
+{
+    int other = column + 1;
+    while (other < t->columns && strcmp(t->headings[other], t->headings[column]) != 0) {
+        other++;
+    }
+    for (size_t r = 0; other < t->columns && r < t->rows; r++) {
+        if (strcmp(field_at(t, r, column), field_at(t, r, other)) != 0) {
+            return fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[r], other + 1,
+                                   "%.300s:%d:%d: columns %d and %d are both headed "
+                                   "'%.*s' and differ here, expected one of them",
+                                   t->file, t->lines[r], other + 1, column + 1, other + 1,
+                                   SHOWN, t->headings[column]);
+        }
+    }
+    return STATUS_OK;
+}
+
 // Finds the column of a heading.
 static status find_column(const csv_table *t, const char *heading, int *column, fault *f)
 {
     *column = csv_table_find(t, heading);
-    if (*column < 0) {
-        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
-                               "%.300s:1:1: there is no column '%.*s', expected one of "
-                               "its %d headings, such as '%.*s'",
-                               t->file, SHOWN, heading, t->columns, SHOWN,
-                               t->headings[0]);
+    if (*column >= 0) {
+        return check_alone(t, *column, f);
     }
-    return STATUS_OK;
+
+    // as many of the headings as have room
+    char headings[4 * SHOWN] = "";
+    for (int c = 0; c < t->columns; c++) {
+        text_add(headings, sizeof headings, "%s'%.*s'", c > 0 ? ", " : "", SHOWN,
+                 t->headings[c]);
+    }
+    const int line = t->headings_line;
+    return fault_set_place(f, STATUS_BAD_ARGUMENT, line, 1,
+                           "%.300s:%d:1: there is no column '%.*s', expected one of its "
+                           "%d headings %s",
+                           t->file, line, SHOWN, heading, t->columns, headings);
 }
 
 // How many of the wanted unit a number in a column is.
@@ -160,23 +214,20 @@ static status find_factor(const csv_table *t, const char *heading, int column,
     }
     if (*factor == 0) {
         return fault_set_place(
-            f, STATUS_BAD_ARGUMENT, 1, column + 1,
-            "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] or "
+            f, STATUS_BAD_ARGUMENT, t->headings_line, column + 1,
+            "%.300s:%d:%d: the unit [%s] of '%.*s' is not known, expected [%s] or "
             "what can be converted to it",
-            t->file, column + 1, unit, SHOWN, t->headings[column], wanted);
+            t->file, t->headings_line, column + 1, unit, SHOWN, t->headings[column],
+            wanted);
     }
     return STATUS_OK;
-}
-
-static const char *field_at(const csv_table *t, size_t row, int column)
-{
-    return t->fields[row * (size_t)t->columns + (size_t)column];
 }
 
 // Whether a field says that there is no number.
 static bool is_gap(const char *field)
 {
-    static const char *const words[] = {"", "nan", "na", "n/a", "null", "none", "-"};
+    static const char *const words[] = {"",     "nan",  "-nan", "na", "n/a",
+                                        "#n/a", "null", "none", "-"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         if (strcasecmp(field, words[i]) == 0) {
             return true;
@@ -188,9 +239,11 @@ static bool is_gap(const char *field)
 static status refuse_field(const csv_table *t, size_t row, int column, fault *f)
 {
     return fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[row], column + 1,
-                           "%.300s:%d:%d: '%.*s' in column '%.*s' is no finite number",
+                           "%.300s:%d:%d: '%.*s' in column '%.*s' is no finite number, "
+                           "expected one such as 1%c5",
                            t->file, t->lines[row], column + 1, SHOWN,
-                           field_at(t, row, column), SHOWN, t->headings[column]);
+                           field_at(t, row, column), SHOWN, t->headings[column],
+                           t->decimal);
 }
 
 // Reads the fields of a column, NaN for a gap where one may be.
@@ -401,10 +454,11 @@ status csv_table_times(csv_table *t, const char *heading, double rate,
     // a number of a sample, or a time
     if (counts_samples(t, heading, column)) {
         if (rate == 0) {
-            return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, column + 1,
-                                   "%.300s:1:%d: '%.*s' counts samples, whose rate is "
+            return fault_set_place(f, STATUS_BAD_ARGUMENT, t->headings_line, column + 1,
+                                   "%.300s:%d:%d: '%.*s' counts samples, whose rate is "
                                    "not known here, expected times such as time[s]",
-                                   t->file, column + 1, SHOWN, t->headings[column]);
+                                   t->file, t->headings_line, column + 1, SHOWN,
+                                   t->headings[column]);
         }
         factor = 1 / rate;
     } else {

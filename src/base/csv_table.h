@@ -17,8 +17,8 @@ void csv_table_finish(csv_table *t); // one of zeroes is allowed
 // and large letters alike; -1 if there is none.
 int csv_table_find(const csv_table *t, const char *heading);
 
-// The heading of the column that has the times: time, t or another usual name, else one
-// that counts samples. NULL if there is none.
+// The heading of the column that has the times: time, t or another usual name, else the
+// only one in a unit of time, else one that counts samples. NULL if there is none.
 const char *csv_table_clock(const csv_table *t);
 
 // The unit of a column, in its heading or below it; false if none is said.
@@ -34,7 +34,8 @@ typedef enum csv_gaps {
 // The numbers of a column in `unit`, values[rows] on the heap. `heading` is what
 // csv_table_find takes; a "[unit]" in it counts in the place of the file's, and a column
 // without any has the unit that is wanted. STATUS_BAD_ARGUMENT where the column is
-// missing, its unit unknown or a field not a finite number, with line and column;
+// missing, another one of its heading differs, its unit is unknown or a field not a
+// finite number, with line and column;
 // STATUS_NO_MEMORY.
 status csv_table_numbers(const csv_table *t, const char *heading, const char *unit,
                          csv_gaps gaps, double **values, fault *f);

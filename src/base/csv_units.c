@@ -14,6 +14,7 @@ static const struct {
     double factor;
 } units[] = {
     {"sec", "s", 1},
+    {"second", "s", 1},
     {"seconds", "s", 1},
     {"ms", "s", 1e-3},
     {"msec", "s", 1e-3},
@@ -30,8 +31,10 @@ static const struct {
     {"volts", "V", 1},
     {"mV", "V", 1e-3},
     {"kV", "V", 1e3},
+    {"newtons", "N", 1},
     {"mN", "N", 1e-3},
     {"kN", "N", 1e3},
+    {"radians", "rad", 1},
     {"mrad", "rad", 1e-3},
     {"deg", "rad", DEGREE},
     {"degrees", "rad", DEGREE},
@@ -122,6 +125,17 @@ bool csv_unit_alone(const char *field, char unit[UNIT_TEXT])
     return copy_between(field, end, unit) && is_known(unit);
 }
 
+// Whether the last word before a place in a heading is a unit, as in "speed m/s".
+static bool ends_with_unit(const char *heading, const char *end)
+{
+    const char *word = end;
+    char unit[UNIT_TEXT];
+    while (word > heading && strchr(" _:,", word[-1]) == NULL) {
+        word--;
+    }
+    return word > heading && copy_between(word, end, unit) && is_known(unit);
+}
+
 // The place where a heading's unit begins with a sign, at which its name ends; NULL if
 // what follows there is no unit.
 static const char *find_unit(const char *heading, char unit[UNIT_TEXT])
@@ -141,7 +155,8 @@ static const char *find_unit(const char *heading, char unit[UNIT_TEXT])
     const char *const signs[] = {strrchr(heading, ','), strrchr(heading, '_'),
                                  strrchr(heading, ' '), strchr(heading, '/')};
     for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
-        const bool has_name = signs[i] != NULL && signs[i] > heading;
+        const bool has_name = signs[i] != NULL && signs[i] > heading &&
+                              (*signs[i] != '/' || !ends_with_unit(heading, signs[i]));
         if (has_name && copy_between(signs[i] + 1, end, unit) && is_known(unit)) {
             return signs[i];
         }
@@ -158,8 +173,8 @@ bool csv_unit_split(const char *heading, size_t *length, char unit[UNIT_TEXT])
         return false;
     }
 
-    // the name, without the blanks behind it
-    while (sign > heading && is_blank(sign[-1])) {
+    // the name, without what stands between them
+    while (sign > heading && (is_blank(sign[-1]) || sign[-1] == '_')) {
         sign--;
     }
     *length = (size_t)(sign - heading);

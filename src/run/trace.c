@@ -447,9 +447,9 @@ status measured_rows(trace *t, csv_table *table, double rate, const char *column
         free(columns[i]);
     }
     FAULT_IF(code == STATUS_OK && numbers == 0, f, STATUS_BAD_ARGUMENT,
-             "%.200s:1: expected a heading with time[s] and at least one recorded "
+             "%.200s:%d: expected a heading with time[s] and at least one recorded "
              "signal, such as force[N], and a number in a row below it",
-             table->file);
+             table->file, table->headings_line);
     if (code == STATUS_NO_MEMORY) {
         return fault_no_memory(f);
     }

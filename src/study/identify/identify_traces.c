@@ -43,10 +43,10 @@ static status read_column(const csv_table *t, const char *signal, const char *un
     *values = NULL;
     if (missing && said == NULL && gaps == GAPS_HELD) {
         return fault_set_place(
-            f, STATUS_BAD_ARGUMENT, 1, 1,
-            "%.300s:1:1: there is no column 'command', the voltage [V] with "
+            f, STATUS_BAD_ARGUMENT, t->headings_line, 1,
+            "%.300s:%d:1: there is no column 'command', the voltage [V] with "
             "which each trial run is driven: record it, or rename its heading",
-            t->file);
+            t->file, t->headings_line);
     }
     if (missing && said == NULL) {
         return STATUS_OK;
@@ -125,20 +125,22 @@ static void put_row(recorded_trace *t, size_t i, size_t place, bool first)
     }
 }
 
-// Refuses a trace of which many rows have the same times as others.
-static status check_stamps(const recorded_trace *t, size_t alike, size_t rows, fault *f)
+// Refuses a trace of which many rows, the first of them in a line, have the same times as
+// others.
+static status check_stamps(const recorded_trace *t, size_t alike, int line, fault *f)
 {
-    FAULT_IF(alike > rows / ROWS_FOR_ONE_BAD, f, STATUS_BAD_ARGUMENT,
-             "%.300s:2: by their times %zu of %zu rows belong to the sample of the row "
+    FAULT_IF(alike > t->rows / ROWS_FOR_ONE_BAD, f, STATUS_BAD_ARGUMENT,
+             "%.300s:%d: by their times %zu of %zu rows belong to the sample of the row "
              "above and yet differ from it, expected times that tell samples apart",
-             t->file, alike, rows);
+             t->file, line, alike, t->rows);
     return STATUS_OK;
 }
 
 // Keeps one row for each sample: of several, which repeat what the rig holds, the last
 // one's values. Time then counts from the first sample, by the rig's clock where the
-// recorder's differs from that by its error only.
-static status keep_samples(recorded_trace *t, double usual_rate, fault *f)
+// recorder's differs from that by its error only. lines[rows] of the rows in the file.
+static status keep_samples(recorded_trace *t, const int *lines, double usual_rate,
+                           fault *f)
 {
     sample_clock held;
     TRY(find_held_clock(t, &held, f));
@@ -156,6 +158,7 @@ static status keep_samples(recorded_trace *t, double usual_rate, fault *f)
     const double period = t->clock.period;
     t->begin = period > 0 ? t->clock.origin : t->time[0];
     size_t kept = 0, alike = 0;
+    int line = 0;
     double last = -HUGE_VAL;
     bool sample_changed = false;
     for (size_t i = 0; i < t->rows; i++) {
@@ -168,14 +171,14 @@ static status keep_samples(recorded_trace *t, double usual_rate, fault *f)
             t->time[kept++] = t->is_held ? number * period : t->time[i] - t->begin;
             sample_changed = false;
         }
-        if (changes && sample_changed) {
-            alike++;
+        if (changes && sample_changed && alike++ == 0) {
+            line = lines[i];
         }
         sample_changed = sample_changed || changes;
         last = number;
         put_row(t, i, kept - 1, first);
     }
-    TRY(check_stamps(t, alike, t->rows, f));
+    TRY(check_stamps(t, alike, line, f));
     t->rows = kept;
 
     // a sample that changes nothing is not missing
@@ -255,10 +258,10 @@ static status read_columns(recorded_trace *t, const csv_table *table,
     }
     if (readings == 0) {
         return fault_set_place(
-            f, STATUS_BAD_ARGUMENT, 1, 1,
-            "%.300s:1: no reading to compare with, expected a column such as "
+            f, STATUS_BAD_ARGUMENT, table->headings_line, 1,
+            "%.300s:%d: no reading to compare with, expected a column such as "
             "encoder[rad], tachometer[rad/s] or force_reading[N]",
-            t->file);
+            t->file, table->headings_line);
     }
     return STATUS_OK;
 }
@@ -299,24 +302,25 @@ static void name_columns(recorded_trace *t, const csv_table *table, char *const 
     make_printable(t->not_taken, 0);
 }
 
-// Checks that the samples came at a rate that a rig can have.
-static status check_rate(const recorded_trace *t, fault *f)
+// Checks that the samples, the first of them in a line, came at a rate that a rig can
+// have.
+static status check_rate(const recorded_trace *t, int line, fault *f)
 {
     const parameter_info *rate = &parameter_table[PARAMETER_INDEX(control.rate)];
     if (!(t->time[t->rows - 1] > t->time[0])) {
-        return fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
-                               "%.300s:2: no time passes from the first row to the last",
-                               t->file);
+        return fault_set_place(f, STATUS_BAD_ARGUMENT, line, 1,
+                               "%.300s:%d: no time passes from the first row to the last",
+                               t->file, line);
     }
     const double mean = (double)(t->rows - 1) / (t->time[t->rows - 1] - t->time[0]);
     if (mean >= LEAST_RATE && mean <= rate->maximum) {
         return STATUS_OK;
     }
-    return fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
-                           "%.300s:2: by their times %zu rows take %.4g s, expected %g "
+    return fault_set_place(f, STATUS_BAD_ARGUMENT, line, 1,
+                           "%.300s:%d: by their times %zu rows take %.4g s, expected %g "
                            "to %g rows a second, with times in s or their unit in the "
                            "heading, such as time[ms]",
-                           t->file, t->rows, t->time[t->rows - 1] - t->time[0],
+                           t->file, line, t->rows, t->time[t->rows - 1] - t->time[0],
                            LEAST_RATE, rate->maximum);
 }
 
@@ -346,8 +350,8 @@ status identify_add_trace(identification *id, const char *file, char *const *col
     TRY(read_columns(t, &table, columns, count, f));
     csv_table_left_out(&table, t->left_out, sizeof t->left_out);
     name_columns(t, &table, columns, count);
-    TRY(check_rate(t, f));
-    TRY(keep_samples(t, p->control.rate, f));
+    TRY(check_rate(t, table.lines[0], f));
+    TRY(keep_samples(t, table.lines, p->control.rate, f));
     guess_start(t, p);
     return identify_weigh(t, p, f);
 }
