@@ -122,6 +122,25 @@ TEST(rows_without_a_time_are_left_out_and_gaps_filled)
         "first in line 22); 1 before the row above by time, put in order");
 }
 
+// A second recording below the first, however short, is not mixed into it.
+TEST(a_recording_that_begins_anew_is_refused)
+{
+    char text[4096] = "log\ntime[s],v[V]\n";
+    for (int i = 0; i < 310; i++) {
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%d,1\n", i % 300);
+    }
+    SCOPED(csv_table_finish) csv_table t = {0};
+    double *times = NULL;
+    sample_clock clock;
+    fault f;
+    assert_int_equal(read_table(&t, text, 2, &f), STATUS_OK);
+    assert_int_equal(csv_table_times(&t, "time", 0, &clock, &times, &f),
+                     STATUS_BAD_ARGUMENT);
+    assert_null(times);
+    assert_int_equal(f.line, 303);
+    assert_non_null(strstr(f.text, "0 s lies before that of a row above, 299 s"));
+}
+
 // Times that come to the nearest of their last digit are those of the samples, times that
 // scatter more are their own.
 TEST(rounded_stamps_are_the_samples_and_others_their_own)

@@ -15,7 +15,11 @@
 
 #define STAMP_ERROR 0.01 // of a period, that a stamp may be off without saying anything
 
-enum { SHOWN = 60, ROWS_FOR_ONE_BAD = 20 };
+enum {
+    SHOWN = 60,
+    ROWS_FOR_ONE_BAD = 20,
+    MOST_PLACES = 100 // by which a row is put in order
+};
 
 status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
 {
@@ -369,35 +373,42 @@ static void order_rows(csv_table *t, double *times)
 }
 
 // Refuses a table of which too many rows have no time, or one before that of the row
-// above, by the first such row.
+// above, by the first such row, or in which a recorder began anew.
 static status check_times(const csv_table *t, int column, const double *times, fault *f)
 {
-    size_t untimed = 0, receding = 0, first_untimed = 0, first_receding = 0, latest = 0;
+    size_t untimed = 0, receding = 0, first_untimed = 0, first_receding = 0;
+    size_t latest = 0, above = 0; // so far, and when the first receded
+    const size_t most = t->rows / ROWS_FOR_ONE_BAD;
+    bool anew = false;
     for (size_t r = 0; r < t->rows; r++) {
         if (isnan(times[r])) {
             if (untimed++ == 0) {
                 first_untimed = r;
             }
         } else if (times[r] < times[latest]) {
-            if (receding++ == 0) {
+            const bool goes_far = r >= MOST_PLACES && times[r] < times[r - MOST_PLACES];
+            const bool is_first = goes_far && !anew && receding <= most;
+            if (receding++ == 0 || is_first) {
                 first_receding = r;
+                above = latest;
             }
+            anew = anew || goes_far;
         } else {
             latest = r;
         }
     }
-    if (untimed > t->rows / ROWS_FOR_ONE_BAD || isnan(times[0])) {
+    if (untimed > most || isnan(times[0])) {
         return refuse_field(t, first_untimed, column, f);
     }
-    if (receding <= t->rows / ROWS_FOR_ONE_BAD) {
+    if (!anew && receding <= most) {
         return STATUS_OK;
     }
     const int line = t->lines[first_receding];
     return fault_set_place(f, STATUS_BAD_ARGUMENT, line, column + 1,
-                           "%.300s:%d:%d: the time %.9g s lies before that of the row "
+                           "%.300s:%d:%d: the time %.9g s lies before that of a row "
                            "above, %.9g s, as in %zu rows: expected rows by growing time",
-                           t->file, line, column + 1, times[first_receding],
-                           times[first_receding - 1], receding);
+                           t->file, line, column + 1, times[first_receding], times[above],
+                           receding);
 }
 
 // What the last digit of a number stands for.

@@ -46,7 +46,8 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
 //
 // Rows without a time are taken out of the table, and rows with a time before that of the
 // row above put in order; both are counted. Of more than one in 20 the first is a fault,
-// as are all that csv_table_numbers finds. Stamps of a recording that are off its clock's
+// as are a row whose place is 100 rows above or more, where a recorder began anew, and
+// all that csv_table_numbers finds. Stamps of a recording that are off its clock's
 // samples by no more than their last digit and a hundredth of a period are replaced by
 // the samples' instants.
 status csv_table_times(csv_table *t, const char *heading, double rate,
