@@ -16,7 +16,7 @@ cd "$work"
 for name in $("$impactlab" list | awk '/^[a-z]+\// { print $1 }'); do
     "$impactlab" fmu "$name" -o arm.fmu -q
     [ "$(stat -c %s arm.fmu)" -le 1000000 ] || fail "$name: $(stat -c %s arm.fmu) bytes"
-    python3 -m zipfile -t arm.fmu >/dev/null
+    # which looks at its sums, too
     rm -rf arm && python3 -m zipfile -e arm.fmu arm
     if command -v xmllint >/dev/null; then
         xmllint --noout --schema "$root/tests/fmi2/fmi2ModelDescription.xsd" arm/modelDescription.xml 2>said ||

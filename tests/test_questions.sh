@@ -18,11 +18,12 @@ hits() {
 
 # whether one of the answers $1 is among the hits
 answered() {
-    local answer hit
+    local answer hit found
+    mapfile -t found < <(hits)
     while read -r answer; do
-        while read -r hit; do
+        for hit in "${found[@]}"; do
             [ "$hit" = "$answer" ] || [ "${hit%%: *}" = "$answer" ] && return
-        done < <(hits)
+        done
     done < <(tr ';' '\n' <<<"$1" | sed 's/^ *//; s/ *$//; s/`//g')
     return 1
 }
