@@ -296,7 +296,7 @@ each_late "json csv plot" linear compare/hybrid --vary control.kv=0.5:1:2
 each_late "json" tables
 each_late "json latex" figures 3.4 -o late-figures
 each_late "output" plot late.yaml
-each_late "json" bench --only tables_s
+each_late "json" bench --only arm_n2_us_per_ms
 if grep -q tune <<<"$tried"; then
     # -o is written on the way, too
     each_late "json plot" tune brief.yaml --vary motor.voltage=1:2 --minimise peak_force_N --runs 2 -o best.yaml
