@@ -1,7 +1,7 @@
 // How often the intervals of identify hold the true values, with its default options:
-// recordings of four set-ups that a scenario describes, and of two benches by programs of
-// their own, whose amplifier lags, whose sensors show 0.2 % too much and whose hub has
-// play.
+// recordings of four set-ups that a scenario describes, of one whose command is not the
+// one that is recorded, and of two benches by programs of their own, whose amplifier
+// lags, whose sensors show 0.2 % too much and whose hub has play.
 //
 //     test_fit_coverage RECORDINGS [SETUP [FIRST]]
 //
@@ -11,14 +11,16 @@
 #include "tests/bench_sensors.h"
 #include "tests/rig_fixture.h"
 
-#define SPREAD 0.15 // share by which true values are drawn about the scenario's
+#define SPREAD     0.15 // share by which true values are drawn about the scenario's
+
+#define UNRECORDED 0.05 // standard deviation of a command that is not recorded [V]
 
 enum { FITTED = 3, BENCH_SAMPLES = 300, BENCH_RATE = 200 };
 
 static int recordings = 2, first = 0;
 static const char *only;
 
-typedef enum recorder { BY_LAB, BY_FORMULA, BY_MUJOCO } recorder;
+typedef enum recorder { BY_LAB, BY_LAB_PUSHED, BY_FORMULA, BY_MUJOCO } recorder;
 
 typedef struct set_up {
     const char *name;
@@ -56,6 +58,11 @@ static const set_up set_ups[] = {
      "control.law=hybrid control.force=1 control.approach_voltage=2 control.rate=500 "
      "initial.angle=-0.3",
      {"arm.k2", "motor.torque_constant", "motor.stiction"}},
+    {"pushed",
+     BY_LAB_PUSHED,
+     false,
+     BENCH,
+     {"arm.k2", "arm.hub_inertia", "motor.stiction"}},
     // as many links as the bench has: k2 of fewer would be that of a stiffer root
     {"formula",
      BY_FORMULA,
@@ -82,8 +89,9 @@ static FILE *open_recording(char file[64])
     return stream;
 }
 
-// What the lab's rig reads at each sample.
-static void record_by_lab(const scenario *s, char file[64])
+// What the lab's rig reads at each sample of a run, with the command of the run, or with
+// command[] where that is not NULL.
+static void record_by_lab(const scenario *s, const double *command, char file[64])
 {
     FILE *stream = open_recording(file);
     KEPT_RUN(run) = run_done(s, true);
@@ -91,10 +99,48 @@ static void record_by_lab(const scenario *s, char file[64])
     for (int k = 0; k < (int)(s->parameters.run.duration * rate); k++) {
         // the row in the middle of the period shows what the sample at its beginning read
         const sample *row = &run.trace.rows[trace_row_at(&run.trace, (k + 0.6) / rate)];
-        fprintf(stream, "%.17g,%.17g,%.17g,%.17g,%.17g\n", k / rate, row->command,
-                row->encoder, row->tachometer, row->force_reading);
+        const double volts = command != NULL ? command[k] : row->command;
+        fprintf(stream, "%.17g,%.17g,%.17g,%.17g,%.17g\n", k / rate, volts, row->encoder,
+                row->tachometer, row->force_reading);
     }
     assert_int_equal(fclose(stream), 0);
+}
+
+// A command that goes to and fro.
+static void go_to_and_fro(double command[BENCH_SAMPLES])
+{
+    for (int k = 0; k < BENCH_SAMPLES; k++) {
+        command[k] = k / 80 % 2 == 0 ? 1 : -1;
+    }
+}
+
+// What the rig reads under a command that differs from the recorded one: by random volts,
+// others every 10 ms.
+static void record_pushed(scenario *s, random_generator *random, char file[64])
+{
+    static double command[BENCH_SAMPLES];
+    char played[64] = "/tmp/test_fit_coverage.XXXXXX";
+    FILE *stream = fdopen(mkstemp(played), "w");
+    assert_non_null(stream);
+    go_to_and_fro(command);
+    fputs("time[s],command[V]\n", stream);
+    double more = 0;
+    for (int k = 0; k < BENCH_SAMPLES; k++) {
+        if (k % 2 == 0) {
+            more = UNRECORDED * random_about_normal(random);
+        }
+        fprintf(stream, "%.17g,%.17g\n", (double)k / BENCH_RATE, command[k] + more);
+    }
+    assert_int_equal(fclose(stream), 0);
+
+    parameters p = s->parameters;
+    DONE(parameter_set_text(&p, parameter_find("control.law"), "playback", &f));
+    DONE(parameter_set_text(&p, parameter_find("control.playback_file"), played, &f));
+    DONE(parameter_set_number(&p, parameter_find("run.duration"),
+                              (double)BENCH_SAMPLES / BENCH_RATE, &f));
+    DONE(scenario_take_parameters(s, &p, &f));
+    record_by_lab(s, command, file);
+    unlink(played);
 }
 
 // The bench of a scenario's parameters, with what no scenario holds.
@@ -133,9 +179,7 @@ static void record_bench(const set_up *u, const parameters *p, random_generator 
 {
     static double command[BENCH_SAMPLES];
     static bench_sample read[BENCH_SAMPLES];
-    for (int k = 0; k < BENCH_SAMPLES; k++) {
-        command[k] = k / 80 % 2 == 0 ? 1 : -1;
-    }
+    go_to_and_fro(command);
     if (u->recorder == BY_FORMULA) {
         const bench_arm a = bench_of(p, 8);
         bench_arm_run(&a, command, BENCH_SAMPLES, BENCH_RATE, read);
@@ -163,6 +207,7 @@ typedef struct outcome {
     double error[FITTED]; // largest, as a share of the truth
     // sums of the errors over those that are stated, and of the squares of that
     double sum[FITTED], squares[FITTED];
+    double least_command, most_command; // that nobody recorded, as it was estimated [V]
     int found, explained;
 } outcome;
 
@@ -192,7 +237,9 @@ static void fit_recording(const set_up *u, int number, outcome *o)
     parameters p = other.parameters;
     DONE(scenario_take_parameters(&other, &p, &f));
     if (u->recorder == BY_LAB) {
-        record_by_lab(&other, file);
+        record_by_lab(&other, NULL, file);
+    } else if (u->recorder == BY_LAB_PUSHED) {
+        record_pushed(&other, &random, file);
     } else {
         record_bench(u, &other.parameters, &random, file);
     }
@@ -207,6 +254,8 @@ static void fit_recording(const set_up *u, int number, outcome *o)
     DONE(identify_fit(&id, &f));
     o->found += identify_settled(&id) && id.undetermined == 0;
     o->explained += identify_explained(&id);
+    o->least_command = fmin(o->least_command, id.lack.command);
+    o->most_command = fmax(o->most_command, id.lack.command);
     for (int i = 0; i < FITTED; i++) {
         const fitted_parameter *fit = &id.fit[i];
         o->covered[i] += fit->low <= truth[i] && truth[i] <= fit->high;
@@ -222,7 +271,7 @@ static void fit_recording(const set_up *u, int number, outcome *o)
 
 static void study(const set_up *u)
 {
-    outcome o = {.found = 0};
+    outcome o = {.least_command = HUGE_VAL, .most_command = 0};
     if (only != NULL && strcmp(only, u->name) != 0) {
         return;
     }
@@ -242,11 +291,20 @@ static void study(const set_up *u)
     // by four standard deviations of a binomial number, with many recordings as asked for
     const double spread = 4 * sqrt(0.95 * 0.05 * recordings);
     const double least = fmax(0.9 * recordings, 0.95 * recordings - spread);
-    for (int i = 0; i < FITTED && u->recorder == BY_LAB; i++) {
+    const bool by_lab = u->recorder == BY_LAB || u->recorder == BY_LAB_PUSHED;
+    for (int i = 0; i < FITTED && by_lab; i++) {
         assert_true(o.covered[i] >= fmin(least, 0.95 * recordings - 1));
         assert_true(recordings < 200 || o.covered[i] <= 0.99 * recordings);
     }
-    if (u->recorder != BY_LAB) {
+    if (u->recorder == BY_LAB_PUSHED) {
+        print_message("    a command that nobody recorded: %.3g to %.3g V, in truth %g\n",
+                      o.least_command, o.most_command, UNRECORDED);
+        assert_true(o.least_command > UNRECORDED / 2 && o.most_command < 2 * UNRECORDED);
+        assert_true(o.explained == 0);
+    } else if (u->recorder != BY_LAB) {
+        for (int i = 0; i < FITTED; i++) {
+            assert_true(2 * o.covered[i] >= recordings);
+        }
         check_below(o.error[0], 0.03);
         assert_true(o.explained <= 0.1 * recordings);
     }
@@ -261,11 +319,22 @@ TEST(intervals_hold_the_truth_where_the_scenario_is_right)
     }
 }
 
+TEST(a_command_that_nobody_recorded_is_told_by_its_size)
+{
+    for (int i = 0; i < SET_UPS; i++) {
+        if (set_ups[i].recorder == BY_LAB_PUSHED) {
+            study(&set_ups[i]);
+        }
+    }
+}
+
 TEST(what_a_bench_has_more_is_named)
 {
     for (int i = 0; i < SET_UPS; i++) {
         const bool has = set_ups[i].recorder != BY_MUJOCO || bench_has_mujoco();
-        if (set_ups[i].recorder != BY_LAB && has) {
+        const bool is_bench =
+            set_ups[i].recorder == BY_FORMULA || set_ups[i].recorder == BY_MUJOCO;
+        if (is_bench && has) {
             study(&set_ups[i]);
         }
     }

@@ -23,6 +23,7 @@
 // standard normal deviate that white residuals exceed once in 4000
 #define IDENTIFY_WHITE 3.5
 #define IDENTIFY_BLOCK 0.05 // time over which residuals of noise may be correlated [s]
+#define LACK_STRETCH   0.01 // in which an unrecorded command is constant, at least [s]
 // of a direction: smaller ones do not make a parameter undetermined
 #define IDENTIFY_PART 1e-6
 
@@ -123,12 +124,20 @@ typedef struct unknown {
     double *value; // where it is kept
 } unknown;
 
-// Where a model explains the readings least: a stretch of a channel of a trace.
+// What a model lacks. Where it explains the readings least, a stretch of a channel of a
+// trace, and what would explain them.
 typedef struct unexplained {
     int trace, channel; // trace -1: there is none
     double from, to;    // in the trace's own time [s]
     double rms;         // of the residuals, in standard deviations
     double rms_unit;    // the same in the readings' unit
+    double command; // standard deviation of a command that nobody recorded [V]; NaN where
+                    // no reading tells
+    double stretch; // in which it is constant [s]
+    double hub_spring; // stiffness k1 [N m/rad] with which a hub that gives explains them
+                       // no less than a rigid one; NaN where none does
+    double chi_square; // with it
+    double with_spring[IDENTIFY_PATHS]; // values of the parameters with it
 } unexplained;
 
 typedef struct identification {
@@ -154,9 +163,7 @@ typedef struct identification {
     double chi_square; // their sum of squares
     double aic;        // Akaike's criterion, chi_square + 2 unknowns
     bool white;        // no channel's residuals are correlated
-    unexplained lack;  // where the residuals are largest
-    double block; // [s] of the residuals that were drawn for the intervals; 0: they are
-                  // white, and the noise gives the intervals; NaN: there are too few
+    unexplained lack;  // what the model lacks, where the residuals are not white
     double covariance[IDENTIFY_PATHS *
                       IDENTIFY_PATHS]; // this and what follows in their scales
     double singular[IDENTIFY_PATHS];   // values of the Jacobian, rising
@@ -224,9 +231,10 @@ bool identify_explained(const identification *id);
 
 // {"scenario", "fit": [{"path", "value", "standard_error", "low", "high", "determined",
 // "at_end_of_range", "one_sided"}], "correlation", "singular_values", "undetermined",
-// "chi_square", "residuals", "aic", "white", "block_s", "lack": null or {"file",
-// "signal", "from_s", "to_s", "rms", "rms_over_deviation"}, "search": {"starts",
-// "reached", "runs"}, "traces"}. NULL without memory.
+// "chi_square", "residuals", "aic", "white", "lack": null or {"file", "signal", "from_s",
+// "to_s", "rms", "rms_over_deviation", "command_V", "stretch_s", "hub_spring": null or
+// {"k1_N_m_rad", "chi_square", "values"}}, "search": {"starts", "reached", "runs"},
+// "traces"}. NULL without memory.
 json_t *identify_json(const identification *id);
 // Of traces that are read only: {"scenario", "traces"}.
 json_t *identify_preview_json(const identification *id);
@@ -277,8 +285,10 @@ status identify_evaluate(identification *id, const double *x, int sets, const in
 // The Jacobian of the residuals by the unknowns at x, jacobian[unknowns * residuals],
 // column by column, by central differences. Fails as identify_evaluate does.
 status identify_jacobian(identification *id, const double *x, double *jacobian, fault *f);
-// Minimises the sum of squares over all unknowns but one, `held`, from x[unknowns] on;
-// *squares receives it. Fails as identify_evaluate does.
+// Minimises the sum of squares over all unknowns from x[unknowns] on; *squares receives
+// it. Fails as identify_evaluate does.
+status identify_minimise(identification *id, double *x, double *squares, fault *f);
+// The same over all unknowns but one, `held`.
 status identify_minimise_held(identification *id, int held, double *x, double *squares,
                               fault *f);
 // Widens the intervals of a fit that was judged where the sum of squares is no
@@ -297,11 +307,21 @@ status identify_residuals(const identification *id, recorded_trace *t,
 // Finds sizes and whiteness of the residuals of every channel, and where they are
 // largest.
 status identify_explain(identification *id, fault *f);
-// The errors that residuals which stay correlated give: replaces the covariance, and sets
-// `block` and every parameter's interval; block is NaN where there are too few residuals.
-// alone[count * residuals]: columns of the Jacobian, freed of what the traces' own
-// unknowns explain; values[count]: eigenvalues of their products.
-status identify_bootstrap(identification *id, const double *alone, const double *values,
-                          fault *f);
+// Takes out of columns[count * residuals] what the traces' own unknowns could explain as
+// well: the projections on the space of their columns of the Jacobian. False if these
+// have no eigenvectors, or without memory.
+bool identify_leave_own(const identification *id, const double *jacobian, double *columns,
+                        int count);
+// Sets the covariance to that of a model that lacks something, by a command that nobody
+// recorded, and `lack.command`; neither where the amplifier does not take such a command.
+// alone[count * residuals]: the parameters' columns of the
+// Jacobian, freed of what the traces' own unknowns explain; values[count]: eigenvalues of
+// their products. Fails as identify_evaluate does.
+status identify_unrecorded_command(identification *id, const double *jacobian,
+                                   const double *alone, const double *values, fault *f);
+// Goes on with a spring of a hub that the scenario takes for rigid: where that explains
+// no less, adds how far it moves the parameters to the covariance. Sets `lack.hub_spring`
+// and what follows. Fails as identify_evaluate does.
+status identify_hub_spring(identification *id, fault *f);
 // Judges the result: Jacobian column by column, jacobian[unknowns * residuals].
 status identify_judge(identification *id, const double *jacobian, fault *f);

@@ -120,7 +120,10 @@ static void end_stretch(identification *id, const channel_residuals *c, size_t b
                                  .from = t->begin + t->time[begin],
                                  .to = t->begin + t->time[end - 1],
                                  .rms = sqrt(squares / count),
-                                 .rms_unit = sqrt(unit_squares / count)};
+                                 .rms_unit = sqrt(unit_squares / count),
+                                 .command = (double)NAN,
+                                 .stretch = (double)NAN,
+                                 .hub_spring = (double)NAN};
     }
 }
 
@@ -193,7 +196,10 @@ status identify_explain(identification *id, fault *f)
     const double *residual = id->residual;
     double worst = -HUGE_VAL;
     id->white = true;
-    id->lack = (unexplained){.trace = -1};
+    id->lack = (unexplained){.trace = -1,
+                             .command = (double)NAN,
+                             .stretch = (double)NAN,
+                             .hub_spring = (double)NAN};
     for (int k = 0; k < id->trace_count; k++) {
         TRY(judge_trace(id, k, residual, &worst, f));
         residual += id->traces[k].residuals;

@@ -11,81 +11,8 @@
 #define QUANTILE_BELOW 1.644853626951473
 // singular value below which the error of a combination exceeds its value
 #define LEAST_KNOWN 1.0
-#define NO_SAY      1e-12 // eigenvalue, over the largest one, that counts as zero
-
-// --- sums ------------------------------------------------------------------------------
-
-double identify_dot(const double *a, const double *b, size_t count)
-{
-    double sum = 0;
-    for (size_t i = 0; i < count; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-void identify_add_scaled(double *to, double factor, const double *a, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        to[i] += factor * a[i];
-    }
-}
 
 // --- errors ----------------------------------------------------------------------------
-
-// Takes out of the parameters' columns of the Jacobian what the traces' own unknowns
-// could explain as well: the projections on the space of the latter's columns. What is
-// left goes to alone[p * residuals]. The space has an orthogonal basis from the
-// eigenvectors of the columns' matrix of products; eigenvalues that are zero but for
-// rounding have none.
-static bool orthogonalise(const identification *id, const double *jacobian, double *alone)
-{
-    const size_t m = id->residuals;
-    const int p = id->count, q = id->unknowns - p;
-    const double *own_columns = jacobian + (size_t)p * m;
-    double size[IDENTIFY_UNKNOWNS], vectors[IDENTIFY_UNKNOWNS * IDENTIFY_UNKNOWNS],
-        values[IDENTIFY_UNKNOWNS], scratch[2 * IDENTIFY_UNKNOWNS];
-    memcpy(alone, jacobian, (size_t)p * m * sizeof *alone);
-
-    // products of the traces' own columns, each of size 1, and their eigenvectors
-    for (int i = 0; i < q; i++) {
-        const double *column = own_columns + (size_t)i * m;
-        const double square = identify_dot(column, column, m);
-        if (square > 0) {
-            size[i] = sqrt(square);
-        } else {
-            size[i] = 1;
-        }
-        for (int j = 0; j <= i; j++) {
-            vectors[i * q + j] = vectors[j * q + i] =
-                identify_dot(column, own_columns + (size_t)j * m, m) /
-                (size[i] * size[j]);
-        }
-    }
-    SCOPED(free_kept) double *basis = calloc(m, sizeof *basis);
-    if (basis == NULL || (q > 0 && !symmetric_eigen(q, vectors, values, scratch))) {
-        return false;
-    }
-
-    // take the projection on each basis vector, whose square is the eigenvalue, off every
-    // parameter's column
-    for (int k = 0; k < q; k++) {
-        if (values[k] < NO_SAY * values[q - 1]) {
-            continue;
-        }
-        memset(basis, 0, m * sizeof *basis);
-        for (int j = 0; j < q; j++) {
-            identify_add_scaled(basis, vectors[k * q + j] / size[j],
-                                own_columns + (size_t)j * m, m);
-        }
-        for (int i = 0; i < p; i++) {
-            double *column = alone + (size_t)i * m;
-            identify_add_scaled(column, -identify_dot(column, basis, m) / values[k],
-                                basis, m);
-        }
-    }
-    return true;
-}
 
 // Sums over one channel of all traces, a and b being columns of parameters and r
 // residuals: the products a b, and for each parameter the squares of every block's sum of
@@ -268,8 +195,7 @@ static void find_covariance(identification *id, const double *values,
 }
 
 // The errors and the interval of parameter i, from the covariance; `part` is the share of
-// it that lies in combinations which are not determined. An interval from drawn residuals
-// is there already.
+// it that lies in combinations which are not determined.
 static void find_interval(identification *id, int i, double part)
 {
     fitted_parameter *fit = &id->fit[i];
@@ -277,13 +203,11 @@ static void find_interval(identification *id, int i, double part)
     fit->determined = part < IDENTIFY_PART;
     fit->one_sided = least == 0 && fit->value == 0;
     fit->standard_error = fit->scale * sqrt(id->covariance[i * id->count + i]);
-    if (!fit->determined || isnan(id->block)) {
+    if (!fit->determined || (!id->white && isnan(id->lack.command))) {
         fit->standard_error = (double)NAN;
     }
-    if (!(id->block > 0)) {
-        fit->low = fit->value - QUANTILE * fit->standard_error;
-        fit->high = fit->value + QUANTILE * fit->standard_error;
-    }
+    fit->low = fit->value - QUANTILE * fit->standard_error;
+    fit->high = fit->value + QUANTILE * fit->standard_error;
 
     // what cannot be less than nothing is not below it, and at it it has an upper limit
     if (!fit->determined) {
@@ -313,7 +237,8 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     if (alone == NULL) {
         return fault_no_memory(f);
     }
-    bool done = orthogonalise(id, jacobian, alone);
+    memcpy(alone, jacobian, (size_t)p * id->residuals * sizeof *alone);
+    bool done = identify_leave_own(id, jacobian, alone, p);
     memset(id->direction, 0, sizeof id->direction);
     for (int c = 0; c < CHANNELS && done; c++) {
         add_channel(id, c, alone, id->direction, scatter);
@@ -335,9 +260,11 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
         }
     }
     find_covariance(id, values, scatter);
-    id->block = 0;
     if (!id->white) {
-        TRY(identify_bootstrap(id, alone, values, f));
+        TRY(identify_unrecorded_command(id, jacobian, alone, values, f));
+        if (!isnan(id->lack.command)) {
+            TRY(identify_hub_spring(id, f));
+        }
     }
 
     // a parameter with a part in combinations that are not determined is not known

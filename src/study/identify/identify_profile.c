@@ -100,7 +100,7 @@ status identify_profile(identification *id, const double *x, const double *jacob
 {
     const size_t n = (size_t)id->unknowns;
     double covariance[IDENTIFY_UNKNOWNS * IDENTIFY_UNKNOWNS], step[IDENTIFY_UNKNOWNS];
-    if (id->block != 0 || id->undetermined > 0 ||
+    if (!id->white || id->undetermined > 0 ||
         !find_covariance(id, jacobian, covariance)) {
         return STATUS_OK;
     }

@@ -105,10 +105,17 @@ static json_t *lack_json(const identification *id)
     if (identify_explained(id) || lack->trace < 0) {
         return json_null();
     }
-    return json_of("file:t signal:t from_s:n to_s:n rms:n rms_over_deviation:n",
+    json_t *spring = json_null();
+    if (!id->white && !isnan(lack->hub_spring)) {
+        spring = json_of("k1_N_m_rad:n chi_square:n values:o", lack->hub_spring,
+                         lack->chi_square, json_numbers(lack->with_spring, id->count));
+    }
+    return json_of("file:t signal:t from_s:n to_s:n rms:n rms_over_deviation:n "
+                   "command_V:n stretch_s:n hub_spring:o",
                    id->traces[lack->trace].file,
                    signal_table[identify_signals[lack->channel]].name, lack->from,
-                   lack->to, lack->rms_unit, lack->rms);
+                   lack->to, lack->rms_unit, lack->rms, lack->command, lack->stretch,
+                   spring);
 }
 
 json_t *identify_json(const identification *id)
@@ -142,10 +149,10 @@ json_t *identify_json(const identification *id)
         json_add(words, json_text(identify_words(id, k, text, sizeof text)));
     }
     return json_of("scenario:t fit:o correlation:o singular_values:o undetermined:o "
-                   "chi_square:n residuals:i aic:n white:b block_s:n lack:o "
+                   "chi_square:n residuals:i aic:n white:b lack:o "
                    "search:o traces:o",
                    id->base->name, fit, rows, json_numbers(id->singular, p), words,
-                   id->chi_square, (int)id->residuals - p, id->aic, id->white, id->block,
+                   id->chi_square, (int)id->residuals - p, id->aic, id->white,
                    lack_json(id),
                    json_of("starts:i reached:i runs:i", id->searches, id->reached,
                            id->runs),

@@ -414,6 +414,12 @@ status identify_minimise_held(identification *id, int held, double *x, double *s
     return minimise(&s, TOLERANCE_WHOLE, x, squares);
 }
 
+status identify_minimise(identification *id, double *x, double *squares, fault *f)
+{
+    const int none = -1;
+    return identify_minimise_held(id, none, x, squares, f);
+}
+
 bool identify_settled(const identification *id)
 {
     return id->starts <= SCENARIOS_STARTS || id->reached >= IDENTIFY_CONFIRMED;

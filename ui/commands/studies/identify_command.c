@@ -197,8 +197,8 @@ static void print_trace_read(const recorded_trace *t, const char *what)
         say(", stamps off by %.2g us", 1e6 * t->clock.scatter);
     }
     if (t->clock.missing > 0) {
-        say("; %zu samples missing, the longest gap %.3g ms", t->clock.missing,
-            1e3 * t->clock.longest);
+        say("; %zu sample%s missing, the longest gap %.3g ms", t->clock.missing,
+            plural_ending(t->clock.missing), 1e3 * t->clock.longest);
     }
 
     // rows and columns
@@ -243,9 +243,8 @@ static void print_fitted_parameter(const fitted_parameter *fit, bool is_judged)
     const char *name = fit->axis.name;
     const char *unit = sweep_axis_parameter(&fit->axis)->unit;
     if (fit->determined && isnan(fit->standard_error)) {
-        say("  %-26s %12.6g %12s   none: what is left is no noise, and too short to "
-            "say\n",
-            name, fit->value, "-");
+        say("  %-26s %12.6g %12s   none: what is left is no noise\n", name, fit->value,
+            "-");
     } else if (fit->determined && fit->one_sided) {
         say("  %-26s %12.6g %12.3g   at most %.6g %s\n", name, fit->value,
             fit->standard_error, fit->high, unit);
@@ -293,6 +292,26 @@ static void print_recorded_traces(const identification *id, const char *what)
     }
 }
 
+// What would explain residuals that are no noise: the errors are of that.
+static void print_lack(const identification *id)
+{
+    const unexplained *lack = &id->lack;
+    if (!isnan(lack->command)) {
+        say("  errors are those that a command of %.3g V (rms) besides the recorded one, "
+            "another every %.3g ms, could make\n",
+            lack->command, 1e3 * lack->stretch);
+    }
+    if (!isnan(lack->hub_spring)) {
+        say("  and those of a hub that gives: with arm.hub_joint = spring and arm.k1 = "
+            "%.4g N m/rad chi square is %.4g",
+            lack->hub_spring, lack->chi_square);
+        for (int i = 0; i < id->count; i++) {
+            say(", %s %.6g", id->fit[i].axis.name, lack->with_spring[i]);
+        }
+        say("\n");
+    }
+}
+
 // How good the fit is: what it does not determine, and its residuals.
 static void print_judgement(const fit_outcome *o)
 {
@@ -308,10 +327,7 @@ static void print_judgement(const fit_outcome *o)
     say("\n  %zu readings, chi square %.4g, AIC %.6g; the residuals are %s\n",
         id->residuals - (size_t)id->count, id->chi_square, id->aic,
         id->white ? "white" : "correlated");
-    if (id->block > 0) {
-        say("  errors and intervals are of residuals drawn in blocks of %.3g s\n",
-            id->block);
-    }
+    print_lack(id);
     say("  the least of %d starts, reached from %d of those that were drawn, in %d "
         "runs\n",
         id->searches, id->reached, id->runs);
