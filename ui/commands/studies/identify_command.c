@@ -265,8 +265,10 @@ static void print_fitted_parameter(const fitted_parameter *fit, bool is_judged)
 // What a trace has of its own, and what its residuals are.
 static void print_recorded_trace(const recorded_trace *t, const char *what)
 {
-    say("  %s %s: shifted by %.3g ms, encoder by %.3g rad", what, t->file,
-        1e3 * t->own[OWN_SHIFT], t->own[OWN_OFFSET]);
+    say("  %s %s: shifted by %.3g ms", what, t->file, 1e3 * t->own[OWN_SHIFT]);
+    if (t->reading[CHANNEL_ENCODER] != NULL) {
+        say(", encoder by %.3g rad", t->own[OWN_OFFSET]);
+    }
     if (t->contact_count > 0) {
         say("; %d contact%s within %.3g ms, largest force off by %.3g %%",
             t->contact_count, plural_ending((size_t)t->contact_count),
