@@ -132,10 +132,10 @@ typedef struct unexplained {
     double rms;         // of the residuals, in standard deviations
     double rms_unit;    // the same in the readings' unit
     double command; // standard deviation of a command that nobody recorded [V]; NaN where
-                    // no reading tells
+                    // no reading tells, or beyond what the amplifier takes
     double stretch; // in which it is constant [s]
-    double hub_spring; // stiffness k1 [N m/rad] with which a hub that gives explains them
-                       // no less than a rigid one; NaN where none does
+    double hub_spring; // stiffness k1 [N m/rad] of the softest hub that explains them no
+                       // less than a rigid one, but for chance; NaN where none does
     double chi_square; // with it
     double with_spring[IDENTIFY_PATHS]; // values of the parameters with it
 } unexplained;
@@ -314,9 +314,9 @@ bool identify_leave_own(const identification *id, const double *jacobian, double
                         int count);
 // Sets the covariance to that of a model that lacks something, by a command that nobody
 // recorded, and `lack.command`; neither where the amplifier does not take such a command.
-// alone[count * residuals]: the parameters' columns of the
-// Jacobian, freed of what the traces' own unknowns explain; values[count]: eigenvalues of
-// their products. Fails as identify_evaluate does.
+// alone[count * residuals]: the parameters' columns of the Jacobian, freed of what the
+// traces' own unknowns explain; values[count]: eigenvalues of their products. Fails as
+// identify_evaluate does.
 status identify_unrecorded_command(identification *id, const double *jacobian,
                                    const double *alone, const double *values, fault *f);
 // Goes on with a spring of a hub that the scenario takes for rigid: where that explains

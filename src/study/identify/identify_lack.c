@@ -34,9 +34,8 @@
 #include "src/scenario/scenario.h"
 #include "src/study/identify/identify.h"
 
-#define PUSH         0.02  // of the largest command
-#define NO_SAY       1e-12 // eigenvalue, over the largest one, that counts as zero
-#define MOST_NUMBERS 3e7   // in the stretches' columns
+#define PUSH         0.02              // of the largest command
+#define MOST_NUMBERS 3e7               // in the stretches' columns
 #define QUANTILE     1.959963984540054 // of 95 %
 // In k2: how stiff the first spring of a hub begins that is tried, and a spring at most.
 #define HUB_SOFTEST 50.0
@@ -45,7 +44,7 @@
 enum {
     HUB_SPRINGS = 7,      // that are tried at most
     MOST_STRETCHES = 400, // of all traces; those of long ones are longer
-    SHARES = 120          // of commands and noise that are tried, eight a decade
+    SHARES = 60           // of commands and noise that are tried, four a decade
 };
 
 // Stretches of the traces, and what a command in each does.
@@ -162,25 +161,11 @@ static bool split_columns(const identification *id, const double *jacobian,
     return true;
 }
 
-// Finds the share g of the command and the scale s of the noise under which the residuals
-// are most likely. With the eigenvalues l of D'D and the residuals' squares y^2 along
-// their directions, and R the rest of the squares, of n degrees of freedom, it is twice
-// the negative logarithm of the likelihood that is least:
-//
-//     sum over directions of log(1 + g^2 l) + n log s^2 + Q/s^2,
-//     Q = R + sum of y^2/(1 + g^2 l),  s^2 = Q/n, but no less than 1
-//
-// Leaves both as they are where no reading changes with the command.
-static status find_scales(const identification *id, const stretches *all, double *command,
-                          double *noise, fault *f)
+// The columns' products D'D, products[count * count], and D'r.
+static void multiply_columns(const identification *id, const stretches *all,
+                             double *products, double *along)
 {
     const size_t m = id->residuals, n = (size_t)all->count;
-    SCOPED(free_kept) double *room = calloc(n * n + 5 * n, sizeof *room);
-    if (room == NULL) {
-        return fault_no_memory(f);
-    }
-    double *products = room, *values = products + n * n, *squares = values + n;
-    double *along = squares + n, *scratch = along + n;
     for (size_t i = 0; i < n; i++) {
         const double *column = all->columns + i * m;
         along[i] = identify_dot(column, id->residual, m);
@@ -189,34 +174,57 @@ static status find_scales(const identification *id, const stretches *all, double
                 identify_dot(column, all->columns + j * m, m);
         }
     }
-    FAULT_IF(!symmetric_eigen((int)n, products, values, scratch), f, STATUS_SINGULAR,
-             "the parameters' errors cannot be computed");
-    double most, rest = id->chi_square;
+}
+
+// Finds the share g of the command and the scale s of the noise under which the residuals
+// are most likely, of n degrees of freedom: where twice the negative logarithm of the
+// likelihood is least,
+//
+//     log det(1 + g^2 D'D) + n log s^2 + Q/s^2,
+//     Q = r'r - g^2 (D'r)' (1 + g^2 D'D)^-1 D'r,  s^2 = Q/n, but no less than 1
+//
+// Leaves both as they are where no reading changes with the command.
+static status find_scales(const identification *id, const stretches *all, double *command,
+                          double *noise, fault *f)
+{
+    const size_t n = (size_t)all->count;
+    SCOPED(free_kept) double *room = calloc(2 * n * n + 2 * n, sizeof *room);
+    if (room == NULL) {
+        return fault_no_memory(f);
+    }
+    double *products = room, *factor = products + n * n;
+    double *along = factor + n * n, *solved = along + n;
+    multiply_columns(id, all, products, along);
+    double most, size = 0;
     const double freedom = id->chi_square / identify_misfit(id, &most);
-    const double largest = values[n - 1];
-    for (size_t k = 0; k < n; k++) {
-        if (values[k] > NO_SAY * largest) {
-            const double y = identify_dot(products + k * n, along, n);
-            squares[k] = y * y / values[k];
-            rest -= squares[k];
-        }
+    for (size_t i = 0; i < n; i++) {
+        size += products[i * n + i];
     }
 
     // from a command that does next to nothing to one that does all
     double least = HUGE_VAL;
-    for (int i = 0; i < SHARES && largest > 0; i++) {
-        const double g = plain_pow(10, i / 16.0 - 1) / sqrt(largest);
-        double logarithms = 0, left = fmax(rest, 0);
-        for (size_t k = 0; k < n; k++) {
-            const double grown = 1 + g * g * fmax(values[k], 0);
-            logarithms += plain_log(grown);
-            left += squares[k] / grown;
+    for (int i = 0; i < SHARES && size > 0; i++) {
+        const double share = plain_pow(10, i / 4.0 - 2) / size; // g^2
+        for (size_t k = 0; k < n * n; k++) {
+            factor[k] = share * products[k];
         }
-        const double scale = fmax(left / freedom, 1);
-        const double likelihood = logarithms + freedom * plain_log(scale) + left / scale;
+        for (size_t k = 0; k < n; k++) {
+            factor[k * n + k] += 1;
+        }
+        memcpy(solved, along, n * sizeof *solved);
+        if (!symmetric_factor((int)n, factor)) {
+            continue;
+        }
+        symmetric_forward((int)n, factor, solved);
+        const double taken = share * identify_dot(solved, solved, n);
+        const double scale = fmax((id->chi_square - taken) / freedom, 1);
+        double likelihood = freedom * plain_log(scale) + (id->chi_square - taken) / scale;
+        for (size_t k = 0; k < n; k++) {
+            likelihood += 2 * plain_log(factor[k * n + k]);
+        }
         if (likelihood < least) {
             least = likelihood;
-            *command = g;
+            *command = sqrt(share);
             *noise = sqrt(scale);
         }
     }
@@ -344,10 +352,18 @@ status identify_hub_spring(identification *id, fault *f)
     }
     const parameter_change change = {PARAMETER_INDEX(arm.hub_joint), HUB_SPRING};
     scenario base;
-    TRY(scenario_with(id->base, &change, 1, &base, f));
     SCOPED(free_kept) identification *sprung = malloc(sizeof *sprung);
     if (sprung == NULL) {
         return fault_no_memory(f);
+    }
+
+    // not every scenario can have one
+    const status made = scenario_with(id->base, &change, 1, &base, NULL);
+    if (made == STATUS_NO_MEMORY) {
+        return fault_no_memory(f);
+    }
+    if (made != STATUS_OK) {
+        return STATUS_OK;
     }
     *sprung = *id;
     sprung->base = &base;

@@ -432,11 +432,15 @@ static void complain_unexplained(const identification *id)
         return;
     }
     const signal_info *signal = &signal_table[identify_signals[lack->channel]];
+    double from = lack->from;
+    if (fabs(from) < SHORTEST) {
+        from = 0;
+    }
     complain(
         "the model lacks something: the best fit leaves %s, chi square %.3g per "
         "reading, expected about 1. %s shows it most in %s from %.4g s to %.4g s, off "
         "by %.3g %s, %.3g times the noise",
-        how, misfit, id->traces[lack->trace].file, signal->name, lack->from, lack->to,
+        how, misfit, id->traces[lack->trace].file, signal->name, from, lack->to,
         lack->rms_unit, signal->unit, lack->rms);
 }
 
