@@ -18,8 +18,9 @@
 #include "src/scenario/scenario.h"
 #include "src/study/sweep_axis.h"
 
-#define IDENTIFY_GUARD 0.01 // [s]
-#define IDENTIFY_NEAR  5.0  // standard deviations from zero or an end of a range
+#define IDENTIFY_GUARD    0.01 // [s]
+#define IDENTIFY_NEAR     5.0  // standard deviations from zero or an end of a range
+#define IDENTIFY_QUANTILE 1.959963984540054 // normal deviate that 95 % are within
 // standard normal deviate that white residuals exceed once in 4000
 #define IDENTIFY_WHITE 3.5
 #define IDENTIFY_BLOCK 0.05 // time over which residuals of noise may be correlated [s]

@@ -6,8 +6,7 @@
 #include "src/base/dense.h"
 #include "src/study/identify/identify.h"
 
-// Quantiles of the normal distribution: 95 % within, and below.
-#define QUANTILE       1.959963984540054
+// Quantile of the normal distribution: 95 % below.
 #define QUANTILE_BELOW 1.644853626951473
 // singular value below which the error of a combination exceeds its value
 #define LEAST_KNOWN 1.0
@@ -206,8 +205,8 @@ static void find_interval(identification *id, int i, double part)
     if (!fit->determined || (!id->white && isnan(id->lack.command))) {
         fit->standard_error = (double)NAN;
     }
-    fit->low = fit->value - QUANTILE * fit->standard_error;
-    fit->high = fit->value + QUANTILE * fit->standard_error;
+    fit->low = fit->value - IDENTIFY_QUANTILE * fit->standard_error;
+    fit->high = fit->value + IDENTIFY_QUANTILE * fit->standard_error;
 
     // what cannot be less than nothing is not below it, and at it it has an upper limit
     if (!fit->determined) {

@@ -34,9 +34,8 @@
 #include "src/scenario/scenario.h"
 #include "src/study/identify/identify.h"
 
-#define PUSH         0.02              // of the largest command
-#define MOST_NUMBERS 3e7               // in the stretches' columns
-#define QUANTILE     1.959963984540054 // of 95 %
+#define PUSH         0.02 // of the largest command
+#define MOST_NUMBERS 3e7  // in the stretches' columns
 // In k2: how stiff the first spring of a hub begins that is tried, and a spring at most.
 #define HUB_SOFTEST 50.0
 #define HUB_RANGE   1e4
@@ -293,7 +292,7 @@ static void add_difference(identification *id, const double *value)
         difference[i] = (value[i] - id->fit[i].value) / id->fit[i].scale;
     }
     for (size_t i = 0; i < p; i++) {
-        const double share = difference[i] / (QUANTILE * QUANTILE);
+        const double share = difference[i] / (IDENTIFY_QUANTILE * IDENTIFY_QUANTILE);
         identify_add_scaled(id->covariance + i * p, share, difference, p);
     }
 }
@@ -328,7 +327,8 @@ static status find_softest_hub(identification *sprung, const identification *id,
 {
     const double k2 = id->base->parameters.arm.k2;
     double most;
-    const double chance = QUANTILE * QUANTILE * identify_misfit(id, &most);
+    const double chance =
+        IDENTIFY_QUANTILE * IDENTIFY_QUANTILE * identify_misfit(id, &most);
     char path[100];
     *found = false;
     decimal_print(path, sizeof path, "arm.k1=%.17g:%.17g", k2, HUB_RANGE * k2);

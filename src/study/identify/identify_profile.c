@@ -14,11 +14,10 @@
 #include "src/base/dense.h"
 #include "src/study/identify/identify.h"
 
-#define APART    2.0   // standard deviations from the result to where is looked
-#define OFF      0.25  // share by which a rise may differ from that of a paraboloid
-#define WIDEST   4.0   // by which a profile widens an end at most
-#define NO_SAY   1e-12 // eigenvalue, over the largest one, that counts as zero
-#define QUANTILE 1.959963984540054 // of 95 %
+#define APART  2.0   // standard deviations from the result to where is looked
+#define OFF    0.25  // share by which a rise may differ from that of a paraboloid
+#define WIDEST 4.0   // by which a profile widens an end at most
+#define NO_SAY 1e-12 // eigenvalue, over the largest one, that counts as zero
 
 // The covariance of all unknowns, covariance[unknowns * unknowns], from the Jacobian.
 static bool find_covariance(const identification *id, const double *jacobian,
@@ -83,8 +82,8 @@ static void widen(identification *id, int i, const double factor[2])
     fitted_parameter *fit = &id->fit[i];
     const double least = sweep_axis_parameter(&fit->axis)->minimum;
     const double error = fit->standard_error, mean = (factor[0] + factor[1]) / 2;
-    fit->low = fit->value - QUANTILE * error * factor[0];
-    fit->high = fit->value + QUANTILE * error * factor[1];
+    fit->low = fit->value - IDENTIFY_QUANTILE * error * factor[0];
+    fit->high = fit->value + IDENTIFY_QUANTILE * error * factor[1];
     if (least == 0) {
         fit->low = fmax(fit->low, 0);
     }
