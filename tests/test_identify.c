@@ -50,13 +50,15 @@ static scenario rig_scenario(const recording_made *r, const double *values, int 
     return s;
 }
 
-// Runs a recording with the true values and writes what its sensors read.
-static void record(recording_made *r, const double *values, int seed, int links)
+// Runs a recording with the true values and further settings, up to a NULL, and writes
+// what its sensors read.
+static void record_with(recording_made *r, const double *values, int seed,
+                        char *const *settings)
 {
     scenario s = rig_scenario(r, values, seed);
-    parameters p = s.parameters;
-    DONE(parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, &f));
-    DONE(scenario_take_parameters(&s, &p, &f));
+    for (; *settings != NULL; settings++) {
+        DONE(scenario_override(&s, *settings, &f));
+    }
     KEPT_RUN(run) = run_done(&s, true);
     snprintf(r->file, sizeof r->file, "/tmp/test_identify.XXXXXX");
     FILE *file = fdopen(mkstemp(r->file), "w");
@@ -70,6 +72,13 @@ static void record(recording_made *r, const double *values, int seed, int links)
                 row->tachometer, row->force_reading);
     }
     assert_int_equal(fclose(file), 0);
+}
+
+// The same of an arm of so many links.
+static void record(recording_made *r, const double *values, int seed, int links)
+{
+    char *settings[] = {formatted("arm.links=%d", links), NULL};
+    record_with(r, values, seed, settings);
 }
 
 static void set_up(identification *id, const scenario *base, recording_made *made,
@@ -528,6 +537,42 @@ TEST(two_links_leave_eight_unexplained)
     }
     print_message("whiteness rejected in %d of %d\n", rejected, seeds);
     assert_true(rejected >= 0.95 * seeds);
+}
+
+// A hub that gives looks like a softer arm: errors of a fit with a rigid one are of that
+// too, unless the joints' damping is fitted, which one joint more would number anew.
+TEST(a_hub_that_gives_is_allowed_for)
+{
+    static char *const sprung[] = {"arm.hub_joint=spring", "arm.k1=500",
+                                   "arm.joint_damping=0.3,0.003", NULL};
+    recording_made made = {.law = "open-loop",
+                           .angle = -1.5,
+                           .voltage = 3,
+                           .reverses = true,
+                           .no_wall = true};
+    scenario base = rig_scenario(&made, NULL, 1);
+    DONE(scenario_override(&base, "arm.joint_damping=0.003", &f));
+    record_with(&made, truth, 1, sprung);
+    for (int damping = 0; damping <= 1; damping++) {
+        SCOPED(identify_finish) identification id;
+        set_up(&id, &base, &made, 1, 3);
+        if (damping) {
+            DONE(identify_add_path(&id, "arm.joint_damping[1]", &f));
+        }
+        fit(&id);
+        const fitted_parameter *k2 = &id.fit[0];
+        assert_false(identify_explained(&id));
+        assert_true(id.lack.command > 0);
+        assert_true(isnan(id.lack.hub_spring) == damping);
+        if (!damping) {
+            // the true one is among those that are allowed
+            const double with_spring = id.lack.with_spring[0];
+            check_below(id.lack.hub_spring, 500);
+            assert_true(k2->low < with_spring && with_spring < k2->high);
+            assert_true(k2->low < truth[0] && truth[0] < k2->high);
+        }
+    }
+    unlink(made.file);
 }
 
 TEST(another_trace_is_foretold)

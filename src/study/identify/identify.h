@@ -135,9 +135,10 @@ typedef struct unexplained {
     double command; // standard deviation of a command that nobody recorded [V]; NaN where
                     // no reading tells, or beyond what the amplifier takes
     double stretch; // in which it is constant [s]
-    double hub_spring; // stiffness k1 [N m/rad] of the softest hub that explains them no
-                       // less than a rigid one, but for chance; NaN where none does
-    double chi_square; // with it
+    double hub_spring;  // stiffness k1 [N m/rad] of the softest hub that explains them no
+                        // less than a rigid one, but for chance; NaN where none does
+    double hub_damping; // of it [N m s/rad]
+    double chi_square;  // with it
     double with_spring[IDENTIFY_PATHS]; // values of the parameters with it
 } unexplained;
 
@@ -234,8 +235,8 @@ bool identify_explained(const identification *id);
 // "at_end_of_range", "one_sided"}], "correlation", "singular_values", "undetermined",
 // "chi_square", "residuals", "aic", "white", "lack": null or {"file", "signal", "from_s",
 // "to_s", "rms", "rms_over_deviation", "command_V", "stretch_s", "hub_spring": null or
-// {"k1_N_m_rad", "chi_square", "values"}}, "search": {"starts", "reached", "runs"},
-// "traces"}. NULL without memory.
+// {"k1_N_m_rad", "damping_N_m_s_rad", "chi_square", "values"}}, "search": {"starts",
+// "reached", "runs"}, "traces"}. NULL without memory.
 json_t *identify_json(const identification *id);
 // Of traces that are read only: {"scenario", "traces"}.
 json_t *identify_preview_json(const identification *id);
@@ -283,6 +284,8 @@ double identify_unknown_value(const identification *id, int n, double x);
 // filled in. `why` (may be NULL) receives the fault of the first run that failed.
 status identify_evaluate(identification *id, const double *x, int sets, const int *only,
                          bool judge, double *out, fault *why, fault *f);
+// The result's unknowns x[unknowns], in their scales.
+void identify_result(const identification *id, double *x);
 // The Jacobian of the residuals by the unknowns at x, jacobian[unknowns * residuals],
 // column by column, by central differences. Fails as identify_evaluate does.
 status identify_jacobian(identification *id, const double *x, double *jacobian, fault *f);
@@ -313,16 +316,5 @@ status identify_explain(identification *id, fault *f);
 // have no eigenvectors, or without memory.
 bool identify_leave_own(const identification *id, const double *jacobian, double *columns,
                         int count);
-// Sets the covariance to that of a model that lacks something, by a command that nobody
-// recorded, and `lack.command`; neither where the amplifier does not take such a command.
-// alone[count * residuals]: the parameters' columns of the Jacobian, freed of what the
-// traces' own unknowns explain; values[count]: eigenvalues of their products. Fails as
-// identify_evaluate does.
-status identify_unrecorded_command(identification *id, const double *jacobian,
-                                   const double *alone, const double *values, fault *f);
-// Goes on with a spring of a hub that the scenario takes for rigid: where that explains
-// no less, adds how far it moves the parameters to the covariance. Sets `lack.hub_spring`
-// and what follows. Fails as identify_evaluate does.
-status identify_hub_spring(identification *id, fault *f);
 // Judges the result: Jacobian column by column, jacobian[unknowns * residuals].
 status identify_judge(identification *id, const double *jacobian, fault *f);

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/base/dense.h"
-#include "src/study/identify/identify.h"
+#include "src/study/identify/identify_lack.h"
 
 // Quantile of the normal distribution: 95 % below.
 #define QUANTILE_BELOW 1.644853626951473
@@ -260,9 +260,11 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     }
     find_covariance(id, values, scatter);
     if (!id->white) {
-        TRY(identify_unrecorded_command(id, jacobian, alone, values, f));
+        SCOPED(lack_finish)
+        lack_model model = {.jacobian = jacobian, .alone = alone, .values = values};
+        TRY(lack_find_command(id, &model, f));
         if (!isnan(id->lack.command)) {
-            TRY(identify_hub_spring(id, f));
+            TRY(lack_allow_for_hub(id, &model, f));
         }
     }
 

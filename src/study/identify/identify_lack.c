@@ -17,13 +17,7 @@
 //     J^-1 A' V A J^-1 = s^2 J^-1 + s^2 g^2 (J^-1 A' D)(J^-1 A' D)'.
 //
 // A command s g beyond what the amplifier takes explains nothing: then there are no
-// errors.
-//
-// A hub that gives or has play does what no such command does: the arm bends as if its
-// stiffness were less. So a rigid hub is given a spring and the fit goes on from its
-// result. The way d that the parameters go with the softest spring that the readings
-// allow is an error that could be: it counts as the 95 % point of an independent one, d
-// d'/1.96^2.
+// errors. What a hub that gives could do is added (identify_hub.c).
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,29 +26,15 @@
 #include "src/base/numbers.h"
 #include "src/base/plain_math.h"
 #include "src/scenario/scenario.h"
-#include "src/study/identify/identify.h"
+#include "src/study/identify/identify_lack.h"
 
 #define PUSH         0.02 // of the largest command
 #define MOST_NUMBERS 3e7  // in the stretches' columns
-// In k2: how stiff the first spring of a hub begins that is tried, and a spring at most.
-#define HUB_SOFTEST 50.0
-#define HUB_RANGE   1e4
 
 enum {
-    HUB_SPRINGS = 7,      // that are tried at most
     MOST_STRETCHES = 400, // of all traces; those of long ones are longer
-    SHARES = 60           // of commands and noise that are tried, four a decade
+    STRENGTHS = 60        // of commands and noise that are tried, four a decade
 };
-
-// Stretches of the traces, and what a command in each does.
-typedef struct stretches {
-    int count;
-    double length;   // of each [s]
-    double *columns; // changes of the residuals by it [count * residuals]
-    double *shares;  // changes of the parameters, in their scales [count * parameters]
-} stretches;
-
-// --- the command that nobody recorded --------------------------------------------------
 
 static int stretches_of(const recorded_trace *t, double length)
 {
@@ -63,7 +43,7 @@ static int stretches_of(const recorded_trace *t, double length)
 
 // Sets how long the stretches are, longer than LACK_STRETCH where there would be too many
 // of them, and how many all traces have.
-static void lay_out_stretches(const identification *id, stretches *all)
+static void lay_out_stretches(const identification *id, lack_model *model)
 {
     double time = 0; // of all traces
     for (int k = 0; k < id->trace_count; k++) {
@@ -71,9 +51,9 @@ static void lay_out_stretches(const identification *id, stretches *all)
         time += t->time[t->rows - 1];
     }
     const double most = fmin(MOST_STRETCHES, MOST_NUMBERS / (double)id->residuals);
-    all->length = fmax(LACK_STRETCH, time / most);
+    model->length = fmax(LACK_STRETCH, time / most);
     for (int k = 0; k < id->trace_count; k++) {
-        all->count += stretches_of(&id->traces[k], all->length);
+        model->count += stretches_of(&id->traces[k], model->length);
     }
 }
 
@@ -135,65 +115,84 @@ static void solve_information(const identification *id, const double *values,
     memcpy(sums, share, (size_t)p * sizeof *sums);
 }
 
-// Splits what each stretch does to the residuals into what it does to the parameters, its
-// shares, and what no unknown explains, which stays in its column.
-static bool split_columns(const identification *id, const double *jacobian,
-                          const double *alone, const double *values, stretches *all)
+// Splits columns of changes of the residuals into what they do to the parameters, their
+// shares, and what no unknown explains, which stays in them.
+static bool split_columns(const identification *id, const lack_model *model,
+                          double *columns, double *shares, int count)
 {
     const size_t m = id->residuals, p = (size_t)id->count;
-    for (int b = 0; b < all->count; b++) {
-        double *share = all->shares + (size_t)b * p;
+    for (int b = 0; b < count; b++) {
+        double *share = shares + (size_t)b * p;
         for (size_t a = 0; a < p; a++) {
-            share[a] = identify_dot(alone + a * m, all->columns + (size_t)b * m, m);
+            share[a] = identify_dot(model->alone + a * m, columns + (size_t)b * m, m);
         }
-        solve_information(id, values, share);
+        solve_information(id, model->values, share);
     }
-    if (!identify_leave_own(id, jacobian, all->columns, all->count)) {
+    if (!identify_leave_own(id, model->jacobian, columns, count)) {
         return false;
     }
-    for (int b = 0; b < all->count; b++) {
+    for (int b = 0; b < count; b++) {
         for (size_t a = 0; a < p; a++) {
-            identify_add_scaled(all->columns + (size_t)b * m,
-                                -all->shares[(size_t)b * p + a], alone + a * m, m);
+            identify_add_scaled(columns + (size_t)b * m, -shares[(size_t)b * p + a],
+                                model->alone + a * m, m);
         }
     }
     return true;
 }
 
-// The columns' products D'D, products[count * count], and D'r.
-static void multiply_columns(const identification *id, const stretches *all,
-                             double *products, double *along)
+// The columns' products D'D, products[count * count].
+static void multiply_columns(const identification *id, const lack_model *model,
+                             double *products)
 {
-    const size_t m = id->residuals, n = (size_t)all->count;
+    const size_t m = id->residuals, n = (size_t)model->count;
     for (size_t i = 0; i < n; i++) {
-        const double *column = all->columns + i * m;
-        along[i] = identify_dot(column, id->residual, m);
         for (size_t j = 0; j <= i; j++) {
             products[i * n + j] = products[j * n + i] =
-                identify_dot(column, all->columns + j * m, m);
+                identify_dot(model->columns + i * m, model->columns + j * m, m);
         }
     }
 }
 
-// Finds the share g of the command and the scale s of the noise under which the residuals
-// are most likely, of n degrees of freedom: where twice the negative logarithm of the
-// likelihood is least,
+// D'r of residuals r, along[count].
+static void multiply_residuals(const lack_model *model, const double *residual, size_t m,
+                               double *along)
+{
+    for (int i = 0; i < model->count; i++) {
+        along[i] = identify_dot(model->columns + (size_t)i * m, residual, m);
+    }
+}
+
+// What the command, with the strength g^2, takes of a sum of squares r'r,
+//
+//     g^2 (D'r)' (1 + g^2 D'D)^-1 D'r,
+//
+// along[n] being D'r, which is overwritten, and factor[n * n] Cholesky's.
+static double squares_taken(double strength, size_t n, const double *factor,
+                            double *along)
+{
+    symmetric_forward((int)n, factor, along);
+    return strength * identify_dot(along, along, n);
+}
+
+// Finds the strength g^2 of the command and the square s^2 of the noise's scale under
+// which the residuals are most likely, of n degrees of freedom: where twice the negative
+// logarithm of the likelihood is least,
 //
 //     log det(1 + g^2 D'D) + n log s^2 + Q/s^2,
 //     Q = r'r - g^2 (D'r)' (1 + g^2 D'D)^-1 D'r,  s^2 = Q/n, but no less than 1
 //
-// Leaves both as they are where no reading changes with the command.
-static status find_scales(const identification *id, const stretches *all, double *command,
-                          double *noise, fault *f)
+// Leaves the strength as it is where no reading changes with the command.
+static status find_scales(const identification *id, lack_model *model, fault *f)
 {
-    const size_t n = (size_t)all->count;
+    const size_t n = (size_t)model->count;
     SCOPED(free_kept) double *room = calloc(2 * n * n + 2 * n, sizeof *room);
     if (room == NULL) {
         return fault_no_memory(f);
     }
     double *products = room, *factor = products + n * n;
     double *along = factor + n * n, *solved = along + n;
-    multiply_columns(id, all, products, along);
+    multiply_columns(id, model, products);
+    multiply_residuals(model, id->residual, id->residuals, along);
     double most, size = 0;
     const double freedom = id->chi_square / identify_misfit(id, &most);
     for (size_t i = 0; i < n; i++) {
@@ -202,10 +201,10 @@ static status find_scales(const identification *id, const stretches *all, double
 
     // from a command that does next to nothing to one that does all
     double least = HUGE_VAL;
-    for (int i = 0; i < SHARES && size > 0; i++) {
-        const double share = plain_pow(10, i / 4.0 - 2) / size; // g^2
+    for (int i = 0; i < STRENGTHS && size > 0; i++) {
+        const double strength = plain_pow(10, i / 4.0 - 2) / size; // g^2
         for (size_t k = 0; k < n * n; k++) {
-            factor[k] = share * products[k];
+            factor[k] = strength * products[k];
         }
         for (size_t k = 0; k < n; k++) {
             factor[k * n + k] += 1;
@@ -214,170 +213,89 @@ static status find_scales(const identification *id, const stretches *all, double
         if (!symmetric_factor((int)n, factor)) {
             continue;
         }
-        symmetric_forward((int)n, factor, solved);
-        const double taken = share * identify_dot(solved, solved, n);
-        const double scale = fmax((id->chi_square - taken) / freedom, 1);
-        double likelihood = freedom * plain_log(scale) + (id->chi_square - taken) / scale;
+        const double left = id->chi_square - squares_taken(strength, n, factor, solved);
+        const double scale = fmax(left / freedom, 1);
+        double likelihood = freedom * plain_log(scale) + left / scale;
         for (size_t k = 0; k < n; k++) {
             likelihood += 2 * plain_log(factor[k * n + k]);
         }
         if (likelihood < least) {
             least = likelihood;
-            *command = sqrt(share);
-            *noise = sqrt(scale);
+            model->strength = strength;
+            model->scale = scale;
+            memcpy(model->factor, factor, n * n * sizeof *factor);
         }
     }
     return STATUS_OK;
 }
 
 // Sets the covariance to what noise and the command give.
-static void set_covariance(identification *id, const double *values, const stretches *all,
-                           double command, double noise)
+static void set_covariance(identification *id, const lack_model *model)
 {
     const size_t p = (size_t)id->count;
     memset(id->covariance, 0, sizeof id->covariance);
     for (size_t a = 0; a < p; a++) {
         double *row = id->covariance + a * p;
-        row[a] = noise * noise;
-        solve_information(id, values, row);
-        for (size_t b = 0; b < p * (size_t)all->count; b += p) {
-            const double moved = noise * noise * command * command * all->shares[b + a];
-            identify_add_scaled(row, moved, all->shares + b, p);
+        row[a] = model->scale;
+        solve_information(id, model->values, row);
+        for (size_t b = 0; b < p * (size_t)model->count; b += p) {
+            const double moved = model->scale * model->strength * model->shares[b + a];
+            identify_add_scaled(row, moved, model->shares + b, p);
         }
     }
 }
 
-status identify_unrecorded_command(identification *id, const double *jacobian,
-                                   const double *alone, const double *values, fault *f)
-{
-    const size_t m = id->residuals;
-    double x[IDENTIFY_UNKNOWNS], command = (double)NAN, noise = 1;
-    stretches all = {.count = 0};
-    lay_out_stretches(id, &all);
-    SCOPED(free_kept)
-    double *room = calloc((size_t)all.count * (m + (size_t)id->count), sizeof *room);
-    if (room == NULL) {
-        return fault_no_memory(f);
-    }
-    all.columns = room;
-    all.shares = room + (size_t)all.count * m;
-    for (int n = 0; n < id->unknowns; n++) {
-        x[n] = *id->unknown[n].value / id->unknown[n].scale;
-    }
-    double *column = all.columns;
-    for (int k = 0; k < id->trace_count; k++) {
-        TRY(push_stretches(id, k, all.length, x, column, f));
-        column += (size_t)stretches_of(&id->traces[k], all.length) * m;
-    }
-    FAULT_IF(!split_columns(id, jacobian, alone, values, &all), f, STATUS_SINGULAR,
-             "the parameters' errors cannot be computed");
-    TRY(find_scales(id, &all, &command, &noise, f));
-    if (command * noise < id->base->parameters.motor.voltage_limit) {
-        set_covariance(id, values, &all, command, noise);
-        id->lack.command = command * noise;
-        id->lack.stretch = all.length;
-    }
-    return STATUS_OK;
-}
-
-// --- a hub that gives ------------------------------------------------------------------
-
-// Counts how far a hub with a spring moves the parameters, whose values with it are
-// value[], as one more independent error.
-static void add_difference(identification *id, const double *value)
-{
-    const size_t p = (size_t)id->count;
-    double difference[IDENTIFY_PATHS];
-    for (size_t i = 0; i < p; i++) {
-        difference[i] = (value[i] - id->fit[i].value) / id->fit[i].scale;
-    }
-    for (size_t i = 0; i < p; i++) {
-        const double share = difference[i] / (IDENTIFY_QUANTILE * IDENTIFY_QUANTILE);
-        identify_add_scaled(id->covariance + i * p, share, difference, p);
-    }
-}
-
-// Goes on from the fit with the spring k1 of the hub as one unknown more, the last of the
-// parameters, which begins at `begins`. Sets the parameters and chi square of `sprung`.
-static status try_hub_spring(identification *sprung, const identification *id,
-                             double begins, fault *f)
+// Finds what each stretch of the command does, at the fit's result.
+static status find_columns(identification *id, lack_model *model, fault *f)
 {
     double x[IDENTIFY_UNKNOWNS];
-    for (int i = 0; i < id->count; i++) {
-        sprung->fit[i].value = id->fit[i].value;
+    identify_result(id, x);
+    double *column = model->columns;
+    for (int k = 0; k < id->trace_count; k++) {
+        TRY(push_stretches(id, k, model->length, x, column, f));
+        column += (size_t)stretches_of(&id->traces[k], model->length) * id->residuals;
     }
-    sprung->fit[id->count].value = begins;
-    for (int n = 0; n < sprung->unknowns; n++) {
-        x[n] = *sprung->unknown[n].value / sprung->unknown[n].scale;
-    }
-    TRY(identify_minimise(sprung, x, &sprung->chi_square, f));
-    for (int i = 0; i < sprung->count; i++) {
-        sprung->fit[i].value = identify_unknown_value(sprung, i, x[i]);
-    }
+    FAULT_IF(!split_columns(id, model, model->columns, model->shares, model->count), f,
+             STATUS_SINGULAR, "the parameters' errors cannot be computed");
     return STATUS_OK;
 }
 
-// Looks for the softest spring that the readings allow, half an octave stiffer each time:
-// its ringing makes the sum of squares rough, so that a minimisation finds the other
-// parameters, but k1 only near where it began. Those are allowed with which chi square is
-// above that of a rigid hub by no more than chance has it once in 20 times. *found: there
-// is one.
-static status find_softest_hub(identification *sprung, const identification *id,
-                               bool *found, fault *f)
+double lack_unlikelihood(const identification *id, const lack_model *model,
+                         double *residual, double *along)
 {
-    const double k2 = id->base->parameters.arm.k2;
-    double most;
-    const double chance =
-        IDENTIFY_QUANTILE * IDENTIFY_QUANTILE * identify_misfit(id, &most);
-    char path[100];
-    *found = false;
-    decimal_print(path, sizeof path, "arm.k1=%.17g:%.17g", k2, HUB_RANGE * k2);
-    TRY(identify_add_path(sprung, path, f));
-    sprung->residuals = id->residuals + 1;
-    identify_list_unknowns(sprung);
-    double begins = HUB_SOFTEST * k2;
-    for (int i = 0; i < HUB_SPRINGS && !*found; i++) {
-        TRY(try_hub_spring(sprung, id, begins, f));
-        *found = sprung->chi_square < id->chi_square + chance;
-        begins *= M_SQRT2;
+    const size_t m = id->residuals, n = (size_t)model->count;
+    double explained[IDENTIFY_PATHS];
+    if (!split_columns(id, model, residual, explained, 1)) {
+        return (double)NAN;
     }
-    return STATUS_OK;
+    multiply_residuals(model, residual, m, along);
+    const double taken = squares_taken(model->strength, n, model->factor, along);
+    return (identify_dot(residual, residual, m) - taken) / model->scale;
 }
 
-status identify_hub_spring(identification *id, fault *f)
+void lack_finish(lack_model *model)
 {
-    const arm_parameters *arm = &id->base->parameters.arm;
-    if (arm->hub_joint != HUB_RIGID || id->count == IDENTIFY_PATHS) {
-        return STATUS_OK;
-    }
-    const parameter_change change = {PARAMETER_INDEX(arm.hub_joint), HUB_SPRING};
-    scenario base;
-    SCOPED(free_kept) identification *sprung = malloc(sizeof *sprung);
-    if (sprung == NULL) {
-        return fault_no_memory(f);
-    }
+    free(model->columns);
+}
 
-    // not every scenario can have one
-    const status made = scenario_with(id->base, &change, 1, &base, NULL);
-    if (made == STATUS_NO_MEMORY) {
+status lack_find_command(identification *id, lack_model *model, fault *f)
+{
+    lay_out_stretches(id, model);
+    const size_t n = (size_t)model->count, p = (size_t)id->count;
+    model->columns = calloc(n * (id->residuals + p + n), sizeof *model->columns);
+    if (model->columns == NULL) {
         return fault_no_memory(f);
     }
-    if (made != STATUS_OK) {
-        return STATUS_OK;
+    model->shares = model->columns + n * id->residuals;
+    model->factor = model->shares + n * p;
+    model->strength = (double)NAN;
+    TRY(find_columns(id, model, f));
+    TRY(find_scales(id, model, f));
+    const double command = sqrt(model->strength * model->scale);
+    if (command < id->base->parameters.motor.voltage_limit) {
+        set_covariance(id, model);
+        id->lack.command = command;
+        id->lack.stretch = model->length;
     }
-    *sprung = *id;
-    sprung->base = &base;
-    bool found;
-    const status code = find_softest_hub(sprung, id, &found, f);
-    id->runs = sprung->runs;
-    if (code == STATUS_OK && found) {
-        for (int i = 0; i < id->count; i++) {
-            id->lack.with_spring[i] = sprung->fit[i].value;
-        }
-        add_difference(id, id->lack.with_spring);
-        id->lack.hub_spring = sprung->fit[id->count].value;
-        id->lack.chi_square = sprung->chi_square;
-    }
-    sweep_axis_finish(&sprung->fit[id->count].axis);
-    return code;
+    return STATUS_OK;
 }

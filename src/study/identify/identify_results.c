@@ -107,8 +107,9 @@ static json_t *lack_json(const identification *id)
     }
     json_t *spring = json_null();
     if (!id->white && !isnan(lack->hub_spring)) {
-        spring = json_of("k1_N_m_rad:n chi_square:n values:o", lack->hub_spring,
-                         lack->chi_square, json_numbers(lack->with_spring, id->count));
+        spring = json_of("k1_N_m_rad:n damping_N_m_s_rad:n chi_square:n values:o",
+                         lack->hub_spring, lack->hub_damping, lack->chi_square,
+                         json_numbers(lack->with_spring, id->count));
     }
     return json_of("file:t signal:t from_s:n to_s:n rms:n rms_over_deviation:n "
                    "command_V:n stretch_s:n hub_spring:o",

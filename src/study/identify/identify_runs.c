@@ -48,6 +48,13 @@ double identify_unknown_value(const identification *id, int n, double x)
     return x * u->scale;
 }
 
+void identify_result(const identification *id, double *x)
+{
+    for (int n = 0; n < id->unknowns; n++) {
+        x[n] = *id->unknown[n].value / id->unknown[n].scale;
+    }
+}
+
 // --- batches of runs -------------------------------------------------------------------
 
 // A piece of work: one trace's run under one set of unknowns.
