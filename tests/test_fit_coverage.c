@@ -72,7 +72,7 @@ static const set_up set_ups[] = {
     {"mujoco",
      BY_MUJOCO,
      true,
-     BENCH " arm.links=32",
+     BENCH " arm.links=32 arm.damping_ratio=1e-4",
      {"arm.k2", "arm.hub_inertia", "motor.stiction"}},
 };
 

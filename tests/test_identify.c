@@ -550,10 +550,12 @@ TEST(a_hub_that_gives_is_allowed_for)
                            .voltage = 3,
                            .reverses = true,
                            .no_wall = true};
-    scenario base = rig_scenario(&made, NULL, 1);
-    DONE(scenario_override(&base, "arm.joint_damping=0.003", &f));
     record_with(&made, truth, 1, sprung);
     for (int damping = 0; damping <= 1; damping++) {
+        scenario base = rig_scenario(&made, NULL, 1);
+        const char *damped =
+            damping ? "arm.joint_damping=0.003" : "arm.damping_ratio=1e-4";
+        DONE(scenario_override(&base, damped, &f));
         SCOPED(identify_finish) identification id;
         set_up(&id, &base, &made, 1, 3);
         if (damping) {
@@ -570,6 +572,7 @@ TEST(a_hub_that_gives_is_allowed_for)
             check_below(id.lack.hub_spring, 500);
             assert_true(k2->low < with_spring && with_spring < k2->high);
             assert_true(k2->low < truth[0] && truth[0] < k2->high);
+            assert_true(id.lack.hub_damping > 0.1);
         }
     }
     unlink(made.file);

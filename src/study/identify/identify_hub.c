@@ -2,15 +2,17 @@
 //
 // A hub that gives or has play does what no command does that was not recorded: the arm
 // bends as if its stiffness were less. So a rigid hub is given a spring, and the fit goes
-// on with softer and softer ones. Those are allowed with which the residuals r are less
-// likely than with a rigid hub by no more than chance has it once in 20 times: with their
-// covariance V (identify_lack.c), r' V^-1 r of what no unknown explains of r is larger by
-// at most 1.96^2. The way d that the parameters go with the softest of them is an error
-// that could be: it counts as the 95 % point of an independent one, d d'/1.96^2.
+// on with softer and softer ones. The readings speak against a spring where its sum of
+// squares is larger than a rigid hub's, and where the residuals are less likely, too, by
+// more than chance has it once in 20 times: where twice the logarithm of their likelihood
+// (identify_lack.c), of a command and noise of any size, is less by 1.96^2. The way d
+// that the parameters go with the softest spring of the others is an error that could be:
+// it counts as the 95 % point of an independent one, d d'/1.96^2.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/arm/arm.h"
 #include "src/base/numbers.h"
 #include "src/scenario/scenario.h"
 #include "src/study/identify/identify_lack.h"
@@ -30,27 +32,18 @@ typedef struct sprung_fit {
     double x[IDENTIFY_UNKNOWNS]; // its result
     double chi_square;
     double *residual; // with it
-    double *along;    // room
 } sprung_fit;
 
-// Lists the damping of all joints, the hub's first. False where that is too long.
-static bool list_damping(const arm_parameters *arm, double hub,
-                         char list[PARAMETER_VALUE_SIZE])
+// Lists the damping of all joints, the hub's first, then those of the arm. False where
+// that is too long.
+static bool list_damping(double hub, const arm *a, char list[PARAMETER_VALUE_SIZE])
 {
-    double damping[PARAMETER_LIST_MOST];
-    if (arm->links > PARAMETER_LIST_MOST) {
-        return false;
+    int length = decimal_print(list, PARAMETER_VALUE_SIZE, "%.6g", hub);
+    for (int k = 1; k < a->links && length < PARAMETER_VALUE_SIZE; k++) {
+        const size_t room = PARAMETER_VALUE_SIZE - (size_t)length;
+        length += decimal_print(list + length, room, ",%.6g", arm_link_of(a, k).damping);
     }
-    parameters_joint_damping(arm, damping);
-    damping[0] = hub;
-    size_t length = 0;
-    for (int k = 0; k < arm->links && length < PARAMETER_VALUE_SIZE; k++) {
-        const char *separator = k > 0 ? "," : "";
-        const size_t room = PARAMETER_VALUE_SIZE - length;
-        length +=
-            (size_t)decimal_print(list + length, room, "%s%.6g", separator, damping[k]);
-    }
-    return length < PARAMETER_VALUE_SIZE;
+    return a->links <= PARAMETER_LIST_MOST && length < PARAMETER_VALUE_SIZE;
 }
 
 // Whether a parameter, or one of its numbers, is fitted.
@@ -64,29 +57,27 @@ static bool is_fitted(const identification *id, int parameter)
     return false;
 }
 
-// Whether the scenario or the fit damps all springs of the arm in proportion.
-static bool damps_all(const identification *id)
-{
-    const arm_parameters *arm = &id->base->parameters.arm;
-    return arm->damping_ratio > 0 || arm->modal_ratios[0] != '\0' ||
-           is_fitted(id, PARAMETER_INDEX(arm.damping_ratio));
-}
-
-// Makes the scenario of a fit with the spring k1 of a hub that it takes for rigid. It is
-// damped, if all springs are not: one that rings makes the sum of squares rough. Fails
-// where the scenario cannot have one.
+// Makes the scenario of a fit with the spring k1 of a hub that it takes for rigid. The
+// spring is damped, and the other joints are as they were: one that rings makes the sum
+// of squares rough. It is not where joints are not damped one by one. Fails where the
+// scenario cannot have a spring.
 static status give_hub_spring(const identification *id, double k1, scenario *sprung)
 {
-    const arm_parameters *arm = &id->base->parameters.arm;
-    const double hub = 2 * HUB_DAMPING * sqrt(k1 * arm->hub_inertia);
+    const parameters *p = &id->base->parameters;
+    const double hub = 2 * HUB_DAMPING * sqrt(k1 * p->arm.hub_inertia);
     char list[PARAMETER_VALUE_SIZE];
     const parameter_change changes[] = {
         {.parameter = PARAMETER_INDEX(arm.hub_joint), .number = HUB_SPRING},
         {.parameter = PARAMETER_INDEX(arm.k1), .number = k1},
+        {.parameter = PARAMETER_INDEX(arm.damping_ratio), .number = 0},
         {.parameter = PARAMETER_INDEX(arm.joint_damping), .text = list}};
     size_t count = sizeof changes / sizeof *changes;
-    if (damps_all(id) || !list_damping(arm, hub, list)) {
-        count--;
+    arm rigid;
+    arm_init(&rigid, p);
+    if (p->arm.modal_ratios[0] != '\0' ||
+        is_fitted(id, PARAMETER_INDEX(arm.damping_ratio)) ||
+        !list_damping(hub, &rigid, list)) {
+        count -= 2;
     }
     return scenario_with(id->base, changes, count, sprung, NULL);
 }
@@ -123,26 +114,33 @@ static void note_spring(identification *id, const sprung_fit *sprung, double k1)
     }
 }
 
+// Finds whether the readings allow the spring.
+static status judge_spring(const identification *rigid, const lack_model *model,
+                           const sprung_fit *sprung, bool *allowed, fault *f)
+{
+    const double chance = IDENTIFY_QUANTILE * IDENTIFY_QUANTILE;
+    lack_scales scales;
+    if (!lack_find_scales(rigid, model, sprung->residual, &scales)) {
+        return fault_no_memory(f);
+    }
+    *allowed = sprung->chi_square <= rigid->chi_square ||
+               scales.unlikelihood <= model->scales.unlikelihood + chance;
+    return STATUS_OK;
+}
+
 // Looks for the softest spring that the readings allow.
 static status find_softest_hub(identification *id, const lack_model *model,
                                sprung_fit *sprung, fault *f)
 {
     double k1 = HUB_FIRST * id->base->parameters.arm.k2;
-    memcpy(sprung->residual, id->residual, id->residuals * sizeof *id->residual);
-    const double rigid = lack_unlikelihood(id, model, sprung->residual, sprung->along);
-    const double most = rigid + IDENTIFY_QUANTILE * IDENTIFY_QUANTILE;
     for (int i = 0; i < HUB_SPRINGS; i++) {
-        bool possible;
+        bool possible, allowed = false;
         TRY(fit_with_spring(sprung, id, k1, &possible, f));
         if (!possible) {
             break;
         }
-        const double with_spring =
-            lack_unlikelihood(id, model, sprung->residual, sprung->along);
-        if (isnan(rigid) || isnan(with_spring)) {
-            return fault_no_memory(f);
-        }
-        if (with_spring < most) {
+        TRY(judge_spring(id, model, sprung, &allowed, f));
+        if (allowed) {
             note_spring(id, sprung, k1);
         }
         k1 *= HUB_SOFTER;
@@ -172,14 +170,13 @@ status lack_allow_for_hub(identification *id, const lack_model *model, fault *f)
     }
     SCOPED(free_kept) sprung_fit *sprung = malloc(sizeof *sprung);
     SCOPED(free_kept)
-    double *room = calloc(id->residuals + (size_t)model->count, sizeof *room);
-    if (sprung == NULL || room == NULL) {
+    double *residual = calloc(id->residuals, sizeof *residual);
+    if (sprung == NULL || residual == NULL) {
         return fault_no_memory(f);
     }
     sprung->id = *id;
     sprung->id.base = &sprung->base;
-    sprung->residual = room;
-    sprung->along = room + id->residuals;
+    sprung->residual = residual;
     identify_list_unknowns(&sprung->id);
     identify_result(id, sprung->x);
     const status code = find_softest_hub(id, model, sprung, f);

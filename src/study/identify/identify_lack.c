@@ -33,7 +33,8 @@
 
 enum {
     MOST_STRETCHES = 400, // of all traces; those of long ones are longer
-    STRENGTHS = 60        // of commands and noise that are tried, four a decade
+    STRENGTHS = 300,      // of commands that are tried
+    A_DECADE = 20         // of their squares
 };
 
 static int stretches_of(const recorded_trace *t, double length)
@@ -140,106 +141,85 @@ static bool split_columns(const identification *id, const lack_model *model,
     return true;
 }
 
-// The columns' products D'D, products[count * count].
-static void multiply_columns(const identification *id, const lack_model *model,
-                             double *products)
+// Finds the eigenvectors and eigenvalues of the columns' products D'D.
+static status decompose_columns(const identification *id, lack_model *model, fault *f)
 {
     const size_t m = id->residuals, n = (size_t)model->count;
+    SCOPED(free_kept) double *scratch = calloc(2 * n, sizeof *scratch);
+    if (scratch == NULL) {
+        return fault_no_memory(f);
+    }
+    double *products = model->vectors;
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j <= i; j++) {
             products[i * n + j] = products[j * n + i] =
                 identify_dot(model->columns + i * m, model->columns + j * m, m);
         }
     }
+    FAULT_IF(!symmetric_eigen((int)n, products, model->sizes, scratch), f,
+             STATUS_SINGULAR, "the parameters' errors cannot be computed");
+    return STATUS_OK;
 }
 
-// D'r of residuals r, along[count].
-static void multiply_residuals(const lack_model *model, const double *residual, size_t m,
-                               double *along)
-{
-    for (int i = 0; i < model->count; i++) {
-        along[i] = identify_dot(model->columns + (size_t)i * m, residual, m);
-    }
-}
-
-// What the command, with the strength g^2, takes of a sum of squares r'r,
-//
-//     g^2 (D'r)' (1 + g^2 D'D)^-1 D'r,
-//
-// along[n] being D'r, which is overwritten, and factor[n * n] Cholesky's.
-static double squares_taken(double strength, size_t n, const double *factor,
-                            double *along)
-{
-    symmetric_forward((int)n, factor, along);
-    return strength * identify_dot(along, along, n);
-}
-
-// Finds the strength g^2 of the command and the square s^2 of the noise's scale under
-// which the residuals are most likely, of n degrees of freedom: where twice the negative
-// logarithm of the likelihood is least,
-//
-//     log det(1 + g^2 D'D) + n log s^2 + Q/s^2,
-//     Q = r'r - g^2 (D'r)' (1 + g^2 D'D)^-1 D'r,  s^2 = Q/n, but no less than 1
-//
-// Leaves the strength as it is where no reading changes with the command.
-static status find_scales(const identification *id, lack_model *model, fault *f)
+// Sets c[count] to D'r of residuals r, along the eigenvectors.
+static void turn_residuals(const lack_model *model, const double *residual, size_t m,
+                           double *c)
 {
     const size_t n = (size_t)model->count;
-    SCOPED(free_kept) double *room = calloc(2 * n * n + 2 * n, sizeof *room);
-    if (room == NULL) {
-        return fault_no_memory(f);
-    }
-    double *products = room, *factor = products + n * n;
-    double *along = factor + n * n, *solved = along + n;
-    multiply_columns(id, model, products);
-    multiply_residuals(model, id->residual, id->residuals, along);
-    double most, size = 0;
-    const double freedom = id->chi_square / identify_misfit(id, &most);
+    memset(c, 0, n * sizeof *c);
     for (size_t i = 0; i < n; i++) {
-        size += products[i * n + i];
+        const double product = identify_dot(model->columns + i * m, residual, m);
+        for (size_t k = 0; k < n; k++) {
+            c[k] += model->vectors[k * n + i] * product;
+        }
+    }
+}
+
+// Finds the scales under which residuals of n degrees of freedom are most likely,
+// `squares` being their sum r'r and c[count] as turn_residuals leaves them: where twice
+// the negative logarithm of the likelihood is least, with l the eigenvalues of D'D
+//
+//     sum of log(1 + g^2 l) + n log s^2 + Q/s^2,
+//     Q = r'r - g^2 sum of c^2/(1 + g^2 l),  s^2 = Q/n, but no less than 1
+static lack_scales find_scales(const lack_model *model, double freedom, double squares,
+                               const double *c)
+{
+    lack_scales best = {(double)NAN, 1, HUGE_VAL};
+    double size = 0;
+    for (int k = 0; k < model->count; k++) {
+        size += model->sizes[k];
     }
 
     // from a command that does next to nothing to one that does all
-    double least = HUGE_VAL;
     for (int i = 0; i < STRENGTHS && size > 0; i++) {
-        const double strength = plain_pow(10, i / 4.0 - 2) / size; // g^2
-        for (size_t k = 0; k < n * n; k++) {
-            factor[k] = strength * products[k];
+        const double strength = plain_pow(10, (double)i / A_DECADE - 2) / size;
+        double taken = 0, unlikelihood = 0;
+        for (int k = 0; k < model->count; k++) {
+            const double spread = 1 + strength * fmax(model->sizes[k], 0);
+            taken += strength * c[k] * c[k] / spread;
+            unlikelihood += plain_log(spread);
         }
-        for (size_t k = 0; k < n; k++) {
-            factor[k * n + k] += 1;
-        }
-        memcpy(solved, along, n * sizeof *solved);
-        if (!symmetric_factor((int)n, factor)) {
-            continue;
-        }
-        const double left = id->chi_square - squares_taken(strength, n, factor, solved);
-        const double scale = fmax(left / freedom, 1);
-        double likelihood = freedom * plain_log(scale) + left / scale;
-        for (size_t k = 0; k < n; k++) {
-            likelihood += 2 * plain_log(factor[k * n + k]);
-        }
-        if (likelihood < least) {
-            least = likelihood;
-            model->strength = strength;
-            model->scale = scale;
-            memcpy(model->factor, factor, n * n * sizeof *factor);
+        const double scale = fmax((squares - taken) / freedom, 1);
+        unlikelihood += freedom * plain_log(scale) + (squares - taken) / scale;
+        if (unlikelihood < best.unlikelihood) {
+            best = (lack_scales){strength, scale, unlikelihood};
         }
     }
-    return STATUS_OK;
+    return best;
 }
 
 // Sets the covariance to what noise and the command give.
 static void set_covariance(identification *id, const lack_model *model)
 {
+    const lack_scales *scales = &model->scales;
     const size_t p = (size_t)id->count;
     memset(id->covariance, 0, sizeof id->covariance);
     for (size_t a = 0; a < p; a++) {
         double *row = id->covariance + a * p;
-        row[a] = model->scale;
+        row[a] = scales->scale;
         solve_information(id, model->values, row);
         for (size_t b = 0; b < p * (size_t)model->count; b += p) {
-            const double moved = model->scale * model->strength * model->shares[b + a];
+            const double moved = scales->scale * scales->strength * model->shares[b + a];
             identify_add_scaled(row, moved, model->shares + b, p);
         }
     }
@@ -260,17 +240,19 @@ static status find_columns(identification *id, lack_model *model, fault *f)
     return STATUS_OK;
 }
 
-double lack_unlikelihood(const identification *id, const lack_model *model,
-                         double *residual, double *along)
+bool lack_find_scales(const identification *id, const lack_model *model, double *residual,
+                      lack_scales *found)
 {
-    const size_t m = id->residuals, n = (size_t)model->count;
-    double explained[IDENTIFY_PATHS];
+    const size_t m = id->residuals;
+    double explained[IDENTIFY_PATHS], most;
     if (!split_columns(id, model, residual, explained, 1)) {
-        return (double)NAN;
+        return false;
     }
-    multiply_residuals(model, residual, m, along);
-    const double taken = squares_taken(model->strength, n, model->factor, along);
-    return (identify_dot(residual, residual, m) - taken) / model->scale;
+    const double freedom = id->chi_square / identify_misfit(id, &most);
+    const double squares = identify_dot(residual, residual, m);
+    turn_residuals(model, residual, m, model->room);
+    *found = find_scales(model, freedom, squares, model->room);
+    return true;
 }
 
 void lack_finish(lack_model *model)
@@ -281,17 +263,23 @@ void lack_finish(lack_model *model)
 status lack_find_command(identification *id, lack_model *model, fault *f)
 {
     lay_out_stretches(id, model);
-    const size_t n = (size_t)model->count, p = (size_t)id->count;
-    model->columns = calloc(n * (id->residuals + p + n), sizeof *model->columns);
-    if (model->columns == NULL) {
+    const size_t m = id->residuals, n = (size_t)model->count, p = (size_t)id->count;
+    SCOPED(free_kept) double *residual = calloc(m, sizeof *residual);
+    model->columns = calloc(n * (m + p + n + 2), sizeof *model->columns);
+    if (residual == NULL || model->columns == NULL) {
         return fault_no_memory(f);
     }
-    model->shares = model->columns + n * id->residuals;
-    model->factor = model->shares + n * p;
-    model->strength = (double)NAN;
+    model->shares = model->columns + n * m;
+    model->vectors = model->shares + n * p;
+    model->sizes = model->vectors + n * n;
+    model->room = model->sizes + n;
     TRY(find_columns(id, model, f));
-    TRY(find_scales(id, model, f));
-    const double command = sqrt(model->strength * model->scale);
+    TRY(decompose_columns(id, model, f));
+    memcpy(residual, id->residual, m * sizeof *residual);
+    if (!lack_find_scales(id, model, residual, &model->scales)) {
+        return fault_no_memory(f);
+    }
+    const double command = sqrt(model->scales.strength * model->scales.scale);
     if (command < id->base->parameters.motor.voltage_limit) {
         set_covariance(id, model);
         id->lack.command = command;
