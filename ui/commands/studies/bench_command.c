@@ -134,8 +134,8 @@ const command bench_command = {
     .summary = "How fast the lab computes on this machine",
     .operands = "",
     .help =
-        "Medians of repeated measurements, in computing time of one processor\n"
-        "(of the batch: by the clock).\n\n"
+        "Medians of repeated measurements, in computing time of one processor (of the "
+        "batch: by the clock).\n\n"
         "  arm_n2_us_per_ms            two links, 1 s of 1 V into the wall, nothing "
         "recorded\n"
         "  arm_n2_rows_us_per_ms       the same with a row kept for each millisecond\n"
@@ -154,8 +154,8 @@ const command bench_command = {
         "  start_ms                    a start of the program that says its version\n"
         "  figures_s                   the figures of the thesis as PNG\n\n"
         "us_per_ms is microseconds of computing per simulated millisecond. --baseline "
-        "marks as slower\n"
-        "what takes 15 % longer than before and did so in every measurement.\n",
+        "marks as slower what takes 15 % longer than before and did so in every "
+        "measurement.\n",
     .options = {&json_options, OWN_OPTIONS(rows), &quiet_options},
     .run = measure_and_report,
 };

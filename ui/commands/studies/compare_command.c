@@ -377,20 +377,15 @@ const command compare_command = {
     .takes_scenarios = true,
     .help =
         "One row a run: peak force, its overshoot over the commanded force, settling "
-        "time, impacts,\n"
-        "separations, steady error, largest command and electrical energy. Best peak and "
-        "best time are\n"
-        "what a controller could have made of the first impact if it knew the whole "
-        "state, pressing no\n"
-        "harder than the run did; from start is when it has settled, and least time what "
-        "no controller\n"
-        "takes less than for that. --set holds for all of them; --vary, as sweep takes "
-        "it, runs each of\n"
-        "them for every combination of values. --plot gives each signal a panel and each "
-        "run a colour\n"
-        "and a dash; more than four runs have a row of panels each. ^C ends it with the "
-        "rows that are\n"
-        "done (exit status 130).\n",
+        "time, impacts, separations, steady error, largest command and electrical "
+        "energy. Best peak and best time are what a controller could have made of the "
+        "first impact if it knew the whole state, pressing no harder than the run "
+        "did; from start is when it has settled, and least time what no controller "
+        "takes less than for that. --set holds for all of them; --vary, as sweep "
+        "takes it, runs each of them for every combination of values. --plot gives "
+        "each signal a panel and each run a colour and a dash; more than four runs "
+        "have a row of panels each. ^C ends it with the rows that are done (exit "
+        "status 130).\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options, &signal_options},
     .run = compare_and_report,

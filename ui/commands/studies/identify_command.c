@@ -578,34 +578,22 @@ const command identify_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .help =
-        "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit "
-        "motor.stiction\n"
-        "simulates each trace with the command that was recorded and fits the parameters "
-        "until\n"
-        "the readings agree, each judged by its noise. Columns are headed as run --csv "
-        "heads\n"
-        "them: time[s], command[V] and any of encoder, tachometer, force_reading, "
-        "piezo_force,\n"
-        "film, accelerometer, tip_deflection, root_strain. Each trace has a time shift, "
-        "an encoder offset and an "
-        "initial\n"
-        "state of its own. It searches from the scenario's values, then from draws until "
-        "three\n"
-        "of these led to the least sum of squares. The exit status is 1 where 40 starts "
-        "do "
-        "not\n"
-        "settle that, where a value ends at an end of its range (but where that is 0, "
-        "the "
-        "least\n"
-        "there is: then it has an upper limit), and where the data do not determine a\n"
-        "combination, which is named and not written. It is 3 where a fit was found and "
-        "the\n"
-        "model lacks something: residuals that are correlated, or chi square per reading "
-        "above 4,\n"
-        "as of noise twice as large as it is said to be. Intervals are of drawn "
-        "residuals "
-        "then.\n",
+    .help = "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit "
+            "motor.stiction simulates each trace with the command that was recorded and "
+            "fits the parameters until the readings agree, each judged by its noise. "
+            "Columns are headed as run --csv heads them: time[s], command[V] and any of "
+            "encoder, tachometer, force_reading, piezo_force, film, accelerometer, "
+            "tip_deflection, root_strain. Each trace has a time shift, an encoder offset "
+            "and an initial state of its own. It searches from the scenario's values, "
+            "then from draws until three of these led to the least sum of squares. The "
+            "exit status is 1 where 40 starts do not settle that, where a value ends at "
+            "an end of its range (but where that is 0, the least there is: then it has "
+            "an upper limit), and where the data do not determine a combination, which "
+            "is named and not written. It is 3 where a fit was found and the model lacks "
+            "something: residuals that are correlated, or chi square per reading above "
+            "4, as of noise twice as large as it is said to be. Errors of correlated "
+            "residuals are those that a command nobody recorded and a hub that gives "
+            "could make.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &drawn_options,
                 &quiet_options, &page_options},
     .use = fit_and_report,

@@ -191,14 +191,12 @@ const command solve_command = {
     .most = 3,
     .takes_scenarios = true,
     .help =
-        "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
-        "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider "
-        "unless a:b is\n"
-        "given, and locates each limit within it. KEY is one of run --json; the "
-        "condition may be\n"
-        "<, <=, > or >=. A limit is the last value at which the condition holds. Where "
-        "there is\n"
-        "none the exit status is 1.\n",
+        "Up to which voltage does the peak stay below 2 N? solve "
+        "corrected/first-impact motor.voltage 'peak_force_N<2' runs the range, that "
+        "of the parameter's slider unless a:b is given, and locates each limit within "
+        "it. KEY is one of run --json; the condition may be <, <=, > or >=. A limit "
+        "is the last value at which the condition holds. Where there is none the exit "
+        "status is 1.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
     .use = solve_and_report,
 };

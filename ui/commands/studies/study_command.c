@@ -52,23 +52,17 @@ const command study_command = {
     .least = 1,
     .most = 2,
     .takes_scenarios = true,
-    .help =
-        "methods: the scenario (corrected/first-impact) by every method of time "
-        "integration at steps from 1e-2\n"
-        "down to 1e-6 s, with the error of first contact, first pulse's peak and steady "
-        "force.\n"
-        "links: the scenario (corrected/damped-beam) with 2 to 64 links: its blow and "
-        "what a first-order sensor\n"
-        "of 0.5, 1 or 2 ms reads of it, frequencies, statics; Richardson's limit and the "
-        "Euler-Bernoulli\n"
-        "beam, and how many links are enough for which question.\n"
-        "follow: the scenario (compare/observer) under six laws with a set-point and a "
-        "wall that swing, from\n"
-        "0.2 to 25 Hz: error and phase of the force, beside what delay and arm allow. "
-        "See\n"
-        "docs/explanation/methods.md and docs/explanation/trust.md. ^C ends any of them "
-        "with what it has\n"
-        "until then (exit status 130).\n",
+    .help = "methods: the scenario (corrected/first-impact) by every method of time "
+            "integration at steps from 1e-2 down to 1e-6 s, with the error of first "
+            "contact, first pulse's peak and steady force. links: the scenario "
+            "(corrected/damped-beam) with 2 to 64 links: its blow and what a first-order "
+            "sensor of 0.5, 1 or 2 ms reads of it, frequencies, statics; Richardson's "
+            "limit and the Euler-Bernoulli beam, and how many links are enough for which "
+            "question. follow: the scenario (compare/observer) under six laws with a "
+            "set-point and a wall that swing, from 0.2 to 25 Hz: error and phase of the "
+            "force, beside what delay and arm allow. See docs/explanation/methods.md and "
+            "docs/explanation/trust.md. ^C ends any of them with what it has until then "
+            "(exit status 130).\n",
     .operand_word = topic_word,
     .options = {&set_options, &json_options, &drawn_options, &quiet_options,
                 &page_options},
