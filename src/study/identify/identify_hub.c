@@ -23,7 +23,10 @@
 #define HUB_SOFTER  M_SQRT1_2
 #define HUB_DAMPING 0.2
 
-enum { HUB_SPRINGS = 9 }; // that are tried
+enum {
+    HUB_SPRINGS = 9, // that are tried at least,
+    HUB_MOST = 18    // and at most, while the readings allow them
+};
 
 // A fit that goes on with a spring of the hub.
 typedef struct sprung_fit {
@@ -133,8 +136,8 @@ static status find_softest_hub(identification *id, const lack_model *model,
                                sprung_fit *sprung, fault *f)
 {
     double k1 = HUB_FIRST * id->base->parameters.arm.k2;
-    for (int i = 0; i < HUB_SPRINGS; i++) {
-        bool possible, allowed = false;
+    bool possible, allowed = false;
+    for (int i = 0; i < HUB_SPRINGS || (allowed && i < HUB_MOST); i++) {
         TRY(fit_with_spring(sprung, id, k1, &possible, f));
         if (!possible) {
             break;
