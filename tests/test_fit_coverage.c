@@ -302,10 +302,13 @@ static void study(const set_up *u)
         assert_true(o.least_command > UNRECORDED / 2 && o.most_command < 2 * UNRECORDED);
         assert_true(o.explained == 0);
     } else if (u->recorder != BY_LAB) {
+        // nine in ten, less two standard deviations of such a number; k2 within 3 %, and
+        // the coupling's 1 % of the beam's compliance
+        const double held = 0.9 * recordings - 2 * sqrt(0.9 * 0.1 * recordings);
         for (int i = 0; i < FITTED; i++) {
-            assert_true(2 * o.covered[i] >= recordings);
+            assert_true(o.covered[i] >= held);
         }
-        check_below(o.error[0], 0.03);
+        check_below(o.error[0], 0.03 + 0.01);
         assert_true(o.explained <= 0.1 * recordings);
     }
 }
