@@ -539,7 +539,7 @@ TEST(two_links_leave_eight_unexplained)
     assert_true(rejected >= 0.95 * seeds);
 }
 
-// A hub that gives looks like a softer arm: errors of a fit with a rigid one are of that
+// A fit with a rigid hub takes one that gives for another arm: its errors are of that
 // too, unless the joints' damping is fitted, which one joint more would number anew.
 TEST(a_hub_that_gives_is_allowed_for)
 {
