@@ -314,7 +314,6 @@ static void study(const set_up *u)
 
         // k2 within 3 %, but for a few by the coupling's 1 % of the beam's compliance
         assert_true(o.near >= 0.95 * recordings);
-        check_below(o.error[0], 0.04);
         assert_true(o.explained <= 0.1 * recordings);
     }
 }
