@@ -304,14 +304,13 @@ static void print_lack(const identification *id)
             lack->command, 1e3 * lack->stretch);
     }
     if (!isnan(lack->hub_spring)) {
-        say("  and those of a hub that gives: arm.hub_joint = spring with arm.k1 = %.4g "
-            "N "
-            "m/rad",
+        say("  and those of a hub that gives: the readings allow arm.hub_joint = spring "
+            "with arm.k1 = %.4g N m/rad",
             lack->hub_spring);
         if (lack->hub_damping > 0) {
             say(" and %.3g N m s/rad in that joint", lack->hub_damping);
         }
-        say(" is as likely:\n   ");
+        say(":\n   ");
         for (int i = 0; i < id->count; i++) {
             say(" %s = %.6g,", id->fit[i].axis.name, lack->with_spring[i]);
         }
